@@ -11,21 +11,10 @@
 #include "roadstereo/calibration.hpp"
 #include "roadstereo/disparity_plane.hpp"
 #include "roadstereo/image.hpp"
+#include "roadstereo/rigid_transform.hpp"
 
 #pragma GCC visibility push(default)
 namespace roadstereo {
-
-/// Rigid transformation: 3×4, row-major, metres.
-using RigidTransform = std::array<double, 12>;
-
-/// Returns the product: `second` applied after `first`.
-RigidTransform compose(const RigidTransform& second, const RigidTransform& first);
-/// Returns the inverse.
-RigidTransform inverse(const RigidTransform& transform);
-/// Returns a point, transformed.
-std::array<double, 3> transform_point(const RigidTransform& transform, const std::array<double, 3>& point);
-/// Returns a direction, rotated.
-std::array<double, 3> rotate(const RigidTransform& transform, const std::array<double, 3>& direction);
 
 /// Largest absolute value of the column or row of a cell: about 5000 km at 1 cm.
 inline constexpr int max_map_cell = 1 << 29;

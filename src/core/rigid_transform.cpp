@@ -1,4 +1,6 @@
-#include "roadstereo/road_map.hpp"
+#include "roadstereo/rigid_transform.hpp"
+
+#include <cstddef>
 
 namespace roadstereo {
 

@@ -149,6 +149,7 @@ std::vector<std::int64_t> FlightResults::add(const io::FlightFrame& frame) {
   summary_.add(frame);
   frames_csv_ += io::frames_csv_row(frame);
   poses_.add(frame);
+  if (frame.pose) motion_pieces_ = std::max(motion_pieces_, frame.pose->piece + 1);
   if (frame.rig_bias) rig_bias_.add(*frame.rig_bias);
   std::vector<std::int64_t> road_damages = inventory_.add(frame);
   sightings_csv_ += io::sightings_csv_rows(frame, road_damages);

@@ -46,6 +46,9 @@ class FlightResults {
   /// Adds what the trajectory tells of the health of the rig.
   void add(const HealthFinding& finding) { summary_.health.add(finding); }
 
+  /// Number of pieces of the motion so far.
+  int motion_pieces() const { return motion_pieces_; }
+
   const io::FlightInventory& inventory() const { return inventory_; }
 
   /// Writes frames.csv, pose.csv, damages.csv, candidates.csv, sightings.csv, summary.json and report.html, and
@@ -74,6 +77,7 @@ class FlightResults {
   io::PoseTable poses_;
   RigBiasEstimator rig_bias_;
   std::string sightings_csv_;
+  int motion_pieces_ = 0;
 };
 
 }  // namespace roadstereo::cli

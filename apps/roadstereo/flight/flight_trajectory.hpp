@@ -25,6 +25,9 @@ class FlightTrajectory {
   /// Adds the next matched frame. Returns its pose for flight.mcap, if it has one.
   std::optional<io::RosPose> add(const io::FlightFrame& frame, const FrameResult& result);
 
+  /// Pose of the frame that was added last, by odometry alone.
+  const FramePose& last_pose() const { return odometry_.trajectory().frames.back(); }
+
   /// Closes loops, and places the trajectory on the Earth if there is a track that fits it.
   void optimise(const TrackSettings& track);
 

@@ -18,6 +18,8 @@
 #include "mask_file.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/flight_pictures.hpp"
+#include "roadstereo/odometry.hpp"
+#include "roadstereo/road_map.hpp"
 
 namespace roadstereo::cli {
 
@@ -33,12 +35,14 @@ class FlightPipeline {
 
  private:
   void require_unchanged(const io::FlightFrame& last, const std::optional<io::SourcePair>& again) const;
-  void seek(io::FrameSource& source, const std::optional<io::FlightFrame>& last) const;
+  void seek(const std::optional<io::FlightFrame>& last);
   void read();
   void match();
   AutoMask make_mask(const std::optional<io::FlightFrame>& before) const;
   void reject_other_size(io::SourcePair& pair) const;
-  void add_to_trajectory(FlightJob& job);
+  void match_again(const io::FlightFrame& last, const io::SourcePair& pair, Pipeline& pipeline, FlightJob& job);
+  const FramePose& link(FlightJob& job, const StereoCalibration& calibration);
+  void add_pose(FlightJob& job);
   void finish();
   void commit_frame(FlightJob& job);
   void add_pictures(FlightJob& job, const std::vector<std::int64_t>& road_damages);
@@ -52,10 +56,15 @@ class FlightPipeline {
   int finishers_;
   bool from_first_;  ///< reads the frames of an earlier run again
   bool reached_end_ = false;
-  int width_ = 0, height_ = 0;          ///< of the first good pair
-  BoundedQueue<io::SourcePair> pairs_;  ///< from reader to matcher
-  BoundedQueue<JobPointer> matched_;    ///< from matcher to finishers
-  BoundedQueue<JobPointer> free_;       ///< unused jobs
+  int width_ = 0, height_ = 0;           ///< of the first good pair
+  std::optional<io::FlightFrame> last_;  ///< of an earlier run
+  int first_piece_ = 0;                  ///< of the motion, after those of an earlier run
+  int joined_piece_ = -1;                ///< of this run's odometry: the one that goes on from `last_`
+  RigidTransform to_earlier_{};          ///< from its world to that of the earlier run
+  std::optional<Odometry> odometry_;     ///< without a trajectory
+  BoundedQueue<io::SourcePair> pairs_;   ///< from reader to matcher
+  BoundedQueue<JobPointer> matched_;     ///< from matcher to finishers
+  BoundedQueue<JobPointer> free_;        ///< unused jobs
   Sequencer sequencer_;
   FirstException failure_;
 };
@@ -111,18 +120,21 @@ void FlightPipeline::require_unchanged(const io::FlightFrame& last, const std::o
        last.name, "\" and is now ", again ? "\"" + again->name + "\"" : "missing", "; start again without --resume");
 }
 
-/// Skips to the frame after the last one of an earlier run, unless the frames before it are needed again.
-void FlightPipeline::seek(io::FrameSource& source, const std::optional<io::FlightFrame>& last) const {
+/// Skips to the last frame of an earlier run, which the motion goes on from, unless all its frames are needed again.
+void FlightPipeline::seek(const std::optional<io::FlightFrame>& last) {
+  io::FrameSource& source = flight_.source.source();
   if (!last || from_first_) return source.skip(settings_.from);
   source.skip(last->index);
-  require_unchanged(*last, source.next());
+  std::optional<io::SourcePair> again = flight_.source.next();
+  require_unchanged(*last, again);
+  pairs_.put(std::move(*again));
   source.skip(settings_.every - 1);
 }
 
 void FlightPipeline::read() {
   const std::optional<io::FlightFrame> last = flight_.journal.last();  // before the journal grows
   io::FrameSource& source = flight_.source.source();
-  seek(source, last);
+  seek(last);
   while (!flight_.stop.wait(0)) {
     std::optional<io::SourcePair> pair = flight_.source.next();
     if (!pair || (settings_.to && pair->index > *settings_.to)) {
@@ -149,6 +161,8 @@ AutoMask FlightPipeline::make_mask(const std::optional<io::FlightFrame>& before)
 
 void FlightPipeline::match() {
   const std::optional<io::FlightFrame> before = flight_.journal.last();  // before the journal grows
+  last_ = before;
+  first_piece_ = flight_.results.motion_pieces();
   std::optional<Pipeline> pipeline;
   PairWatch watch;
   AutoMask auto_mask = make_mask(before);
@@ -172,9 +186,13 @@ void FlightPipeline::match() {
       warm_up(*pipeline, *pair);
       if (before && (sequence == done || !settings_.trajectory)) pipeline->restore(before->pipeline_state);
     }
-    if (!settings_.trajectory && sequence < done) {
+    const bool is_again = !settings_.trajectory && before && pair->index <= before->index;
+    if (is_again && from_first_) {
       if (pair->error.empty()) auto_mask.look(pair->left.view(), pair->right.view(), pipeline->options().white_level);
       ++sequence;
+    }
+    if (is_again) {
+      if (pipeline && pair->index == before->index) match_again(*before, *pair, *pipeline, **job);
       free_.put(std::move(*job));
       continue;
     }
@@ -183,7 +201,7 @@ void FlightPipeline::match() {
     if (pipeline) {
       if (settings_.trajectory) reject_other_size((*job)->pair);
       match_frame(*pipeline, flight_.source.calibration(), watch, auto_mask, **job);
-      add_to_trajectory(**job);
+      add_pose(**job);
     } else {
       record_rejected(before, **job);
     }
@@ -203,14 +221,46 @@ void FlightPipeline::reject_other_size(io::SourcePair& pair) const {
                            pair.left.height, width_, height_);
 }
 
-void FlightPipeline::add_to_trajectory(FlightJob& job) {
-  if (!settings_.trajectory || job.frame.status != io::FrameStatus::good) return;
-  if (!flight_.trajectory) {
-    const std::optional<StereoCalibration>& calibration = flight_.source.calibration();
-    if (!calibration) fail("--trajectory needs --calibration");
-    flight_.trajectory.emplace(*calibration, flight_.folder.path() / ".keyframes", flight_.plan.options.threads);
+/// Matches the last frame of an earlier run again, so that the motion goes on from it. The state of the pipeline stays.
+void FlightPipeline::match_again(const io::FlightFrame& last, const io::SourcePair& pair, Pipeline& pipeline,
+                                 FlightJob& job) {
+  if (!last.pose || !pair.error.empty()) return;
+  pipeline.process(pair.left.view(), pair.right.view(), job.result);
+  job.frame = last;
+  add_pose(job);
+  pipeline.restore(last.pipeline_state);
+}
+
+/// Links a frame with those before it. Returns its pose.
+const FramePose& FlightPipeline::link(FlightJob& job, const StereoCalibration& calibration) {
+  const int threads = flight_.plan.options.threads;
+  if (!settings_.trajectory) {
+    if (!odometry_) odometry_.emplace(calibration, OdometryOptions{.kept_frames = 1, .threads = threads});
+    return odometry_->add(static_cast<int>(job.frame.index), job.result);
   }
+  if (!flight_.trajectory) flight_.trajectory.emplace(calibration, flight_.folder.path() / ".keyframes", threads);
   job.pose = flight_.trajectory->add(job.frame, job.result);
+  return flight_.trajectory->last_pose();
+}
+
+/// Adds the pose of a frame, by which its damages are known again. The motion is that of frames of one size.
+void FlightPipeline::add_pose(FlightJob& job) {
+  const std::optional<StereoCalibration>& calibration = flight_.source.calibration();
+  if (!calibration || job.frame.status != io::FrameStatus::good) return;
+  if (job.result.grey.width() != width_ || job.result.grey.height() != height_) return;
+  const FramePose& pose = link(job, *calibration);
+  if (!job.result.roll_found) return;
+  const RigidTransform road_to_camera = inverse(camera_to_road(job.result.geometry.plane, *calibration));
+  const RigidTransform road_to_world = compose(pose.camera_to_world, road_to_camera);
+  if (last_ && last_->pose && job.frame.index == last_->index) {
+    joined_piece_ = pose.piece;
+    to_earlier_ = compose(last_->pose->road_to_world, inverse(road_to_world));
+  }
+  if (pose.piece == joined_piece_) {
+    job.frame.pose = {last_->pose->piece, compose(to_earlier_, road_to_world)};
+  } else {
+    job.frame.pose = {first_piece_ + pose.piece, road_to_world};
+  }
 }
 
 void FlightPipeline::finish() {

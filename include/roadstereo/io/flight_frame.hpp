@@ -10,6 +10,7 @@
 #include "roadstereo/damage.hpp"
 #include "roadstereo/health.hpp"
 #include "roadstereo/pipeline.hpp"
+#include "roadstereo/rigid_transform.hpp"
 
 #pragma GCC visibility push(default)
 namespace roadstereo::io {
@@ -28,6 +29,14 @@ struct StaticMaskRecord {
   std::int64_t frame = 0;  ///< frame of the decision, index in the source
   double share = 0;        ///< share of the image that never moves, 0 … 1
   bool applied = false;    ///< whether that part is masked from that frame on
+};
+
+/// Where the camera of a frame was, by odometry.
+struct FlightPose {
+  int piece = 0;  ///< piece of the motion; places of different pieces are not related
+  RigidTransform road_to_world{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  ///< 3×4, row-major, metres: `road_axes` of
+                                                                     ///< this frame to the first camera of
+                                                                     ///< the piece
 };
 
 /// Record of one frame of a flight, without its maps. NaN: unknown.
@@ -55,6 +64,7 @@ struct FlightFrame {
   double noise_px = unknown;                       ///< of the intact road
   double matching_ms = unknown;                    ///< time in Pipeline::process
   double damage_ms = unknown;                      ///< time in find_damage
+  std::optional<FlightPose> pose;                  ///< absent without a calibration or a road
   std::vector<std::array<double, 2>> footprint_m;  ///< `road_footprint`; empty without a calibration
   PairHealth health;
   std::optional<RigBiasFrame> rig_bias;  ///< contribution of the frame to the rig bias (measure_rig_bias)

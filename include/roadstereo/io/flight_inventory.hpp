@@ -42,10 +42,11 @@ bool is_worse(const RoadDamage& one, const RoadDamage& other);
 /// Returns the damages that are candidates, or those that are not, worst first.
 std::vector<RoadDamage> worst_first(const std::vector<RoadDamage>& damages, bool candidates);
 
-/// Tracks damages over the frames of a flight. Sightings in successive frames are one damage if their boxes overlap
-/// after the image motion is compensated. Tracking restarts at a frame whose road was not tracked although the frame
-/// before had one, since the image has then jumped. Frames too far apart to overlap give one damage per sighting. A rut
-/// that runs through the pictures is one damage; a pothole in it is another.
+/// Tracks damages over the frames of a flight. Where the poses of the frames are known, sightings are one damage if
+/// their outlines overlap on the road, however long ago it was seen. Elsewhere, sightings in successive frames are one
+/// damage if their boxes overlap after the image motion is compensated; this restarts at a frame whose road was not
+/// tracked although the frame before had one, since the image has then jumped, and frames too far apart to overlap give
+/// one damage per sighting. A rut that runs through the pictures is one damage; a pothole in it is another.
 /// A region counts as damage of the road if it is a damage in at least one frame and the two frames with the highest
 /// confidence agree: the mean of their log-odds is at least that of the minimum confidence. Otherwise noise in one of
 /// many frames would suffice. A region that only one frame shows is decided by that frame.
@@ -62,13 +63,24 @@ class FlightInventory {
   const std::vector<RoadDamage>& damages() const { return damages_; }
 
  private:
-  /// Last sighting of a damage.
+  /// Outline of a damage in the axes of the first camera of a piece, metres.
+  struct Place {
+    int piece = 0;
+    std::vector<std::array<double, 3>> outline_m;
+    std::array<double, 3> centre_m{};
+    double radius_m = 0;  ///< of the outline around the centre
+  };
+  /// A sighting of a damage.
   struct Sighting {
     std::int64_t id = 0;
     std::int64_t sequence = 0;  ///< number of the frame in the flight
     Damage damage;
+    std::optional<Place> place;
   };
-  const Sighting* seen_before(const Damage& damage, const std::vector<std::int64_t>& taken) const;
+  using Ids = std::vector<std::int64_t>;
+  static std::optional<Place> place_of(const Damage& damage, const std::optional<FlightPose>& pose);
+  std::int64_t seen_here(const Sighting& now, const FlightPose& pose, const Ids& taken) const;
+  std::int64_t seen_in_picture(const Sighting& now, const Ids& taken) const;
   void remember(const std::vector<Sighting>& sightings);
 
   /// The two largest confidences of the frames that show a damage, and whether it is a damage in one of them.
@@ -80,7 +92,9 @@ class FlightInventory {
 
   double min_confidence_;
   std::vector<RoadDamage> damages_;
-  std::vector<Agreement> agreements_;  ///< of each of them
+  std::vector<Sighting> last_;                     ///< last sighting of each of them
+  std::vector<std::optional<Place>> best_places_;  ///< of the best sighting of each of them
+  std::vector<Agreement> agreements_;              ///< of each of them
   std::vector<Sighting> recent_;
   std::array<double, 2> motion_px_{};  ///< image motion from frame to frame
   bool motion_known_ = false;          ///< whether damages of the last frame determined it

@@ -216,6 +216,12 @@ void each_field(RigBiasFrame& frame, Visit& visit) {
 }
 
 template <class Visit>
+void each_field(FlightPose& pose, Visit& visit) {
+  visit("piece", pose.piece);
+  visit("road_to_world", pose.road_to_world);
+}
+
+template <class Visit>
 void each_field(FlightFrame& frame, Visit& visit) {
   visit("frame", frame.index);
   visit("name", frame.name);
@@ -238,6 +244,7 @@ void each_field(FlightFrame& frame, Visit& visit) {
   visit("noise_px", frame.noise_px);
   visit("matching_ms", frame.matching_ms);
   visit("damage_ms", frame.damage_ms);
+  visit("pose", frame.pose);
   visit("footprint_m", frame.footprint_m);
   visit("health", frame.health);
   visit("rig_bias", frame.rig_bias);

@@ -6,13 +6,18 @@
 #include "core/log_odds.hpp"
 #include "core/order_statistics.hpp"
 #include "io/damage_colours.hpp"
+#include "io/flight/outline_overlap.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
+#include "roadstereo/rigid_transform.hpp"
 
 namespace roadstereo::io {
 namespace {
 
 /// Maximum number of frames between two sightings of a damage.
 constexpr std::int64_t max_gap = 2;
+
+/// Overlap of two sightings of one damage, as a fraction of the smaller one.
+constexpr double min_overlap = 0.2;
 
 /// Severity as a number; the expected class where none has more than half of the probability.
 double severity_rank(const Damage& damage) {
@@ -40,6 +45,14 @@ double overlap(const std::array<int, 4>& box, const std::array<double, 2>& move,
   const double smaller = std::min(length(box[0], box[2]) * length(box[1], box[3]),
                                   length(other[0], other[2]) * length(other[1], other[3]));
   return width * height / smaller;
+}
+
+double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+bool is_taken(std::int64_t id, const std::vector<std::int64_t>& taken) {
+  return std::find(taken.begin(), taken.end(), id) != taken.end();
 }
 
 /// Takes the measurement in a frame as the best one.
@@ -80,22 +93,68 @@ std::vector<RoadDamage> worst_first(const std::vector<RoadDamage>& damages, bool
   return sorted;
 }
 
-/// Returns the recent sighting with the largest overlap, or null. While no damage has told the image motion, a camera
-/// that stands still is as likely as one that goes on.
-const FlightInventory::Sighting* FlightInventory::seen_before(const Damage& damage,
-                                                              const std::vector<std::int64_t>& taken) const {
-  constexpr double min_overlap = 0.2;
-  const Sighting* best = nullptr;
+/// Outline of a damage of a frame in the world; none without a pose or an outline.
+std::optional<FlightInventory::Place> FlightInventory::place_of(const Damage& damage,
+                                                                const std::optional<FlightPose>& pose) {
+  if (!pose || !damage.metrics || damage.metrics->outline_m.empty()) return {};
+  Place place;
+  place.piece = pose->piece;
+  for (const auto& [x, y] : damage.metrics->outline_m) {
+    place.outline_m.push_back(transform_point(pose->road_to_world, {x, y, 0}));
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const auto& point : place.outline_m) place.centre_m[axis] += point[axis];
+    place.centre_m[axis] /= static_cast<double>(place.outline_m.size());
+  }
+  for (const auto& point : place.outline_m) {
+    place.radius_m = std::max(place.radius_m, distance(point, place.centre_m));
+  }
+  return place;
+}
+
+/// Returns the id of the known damage with the largest overlap on the road, or 0.
+std::int64_t FlightInventory::seen_here(const Sighting& now, const FlightPose& pose, const Ids& taken) const {
+  std::int64_t best = 0;
   double max_share = min_overlap;
-  for (const Sighting& sighting : recent_) {
-    if (sighting.damage.kind != damage.kind || is_part_of_rut(sighting.damage, damage)) continue;
-    if (std::find(taken.begin(), taken.end(), sighting.id) != taken.end()) continue;
-    const auto frames = static_cast<double>(sequence_ - sighting.sequence);
-    double share = overlap(sighting.damage.box_px, {frames * motion_px_[0], frames * motion_px_[1]}, damage.box_px);
-    if (share <= min_overlap && !motion_known_) share = overlap(sighting.damage.box_px, {}, damage.box_px);
+  const RigidTransform world_to_road = inverse(pose.road_to_world);
+  const auto share_of = [&](const std::optional<Place>& place) {
+    if (!place || place->piece != now.place->piece) return 0.0;
+    const double near = place->radius_m + now.place->radius_m;
+    if (distance(place->centre_m, now.place->centre_m) > near) return 0.0;
+    Outline outline;
+    for (const auto& point : place->outline_m) {
+      const auto on_road = transform_point(world_to_road, point);
+      outline.push_back({on_road[0], on_road[1]});
+    }
+    return outline_overlap(outline, now.damage.metrics->outline_m);
+  };
+  for (std::size_t k = 0; k < damages_.size(); ++k) {
+    const Damage& last = last_[k].damage;
+    if (last.kind != now.damage.kind || is_part_of_rut(last, now.damage) || is_taken(damages_[k].id, taken)) continue;
+    const double share = std::max(share_of(last_[k].place), share_of(best_places_[k]));
     if (share <= max_share) continue;
     max_share = share;
-    best = &sighting;
+    best = damages_[k].id;
+  }
+  return best;
+}
+
+/// Returns the id of the recent sighting whose box overlaps most, or 0. While no damage has told the image motion, a
+/// camera that stands still is as likely as one that goes on.
+std::int64_t FlightInventory::seen_in_picture(const Sighting& now, const Ids& taken) const {
+  std::int64_t best = 0;
+  double max_share = min_overlap;
+  for (const Sighting& sighting : recent_) {
+    if (sighting.damage.kind != now.damage.kind || is_part_of_rut(sighting.damage, now.damage)) continue;
+    if (is_taken(sighting.id, taken)) continue;
+    if (now.place && sighting.place && now.place->piece == sighting.place->piece) continue;  // seen elsewhere
+    const auto frames = static_cast<double>(sequence_ - sighting.sequence);
+    const std::array<int, 4>& box = now.damage.box_px;
+    double share = overlap(sighting.damage.box_px, {frames * motion_px_[0], frames * motion_px_[1]}, box);
+    if (share <= min_overlap && !motion_known_) share = overlap(sighting.damage.box_px, {}, box);
+    if (share <= max_share) continue;
+    max_share = share;
+    best = sighting.id;
   }
   return best;
 }
@@ -131,32 +190,39 @@ std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
   const bool has_road = frame.status == FrameStatus::good && frame.road_status != RoadStatus::none;
   if (has_road && had_road_ && frame.road_status != RoadStatus::tracked) recent_.clear();
   had_road_ = has_road;
-  std::vector<std::int64_t> ids;
+  Ids ids;
   std::vector<Sighting> sightings;
   const auto add_one = [&](const Damage& damage, bool candidate) {
-    const Sighting* const before = seen_before(damage, ids);
-    const std::int64_t id = before == nullptr ? static_cast<std::int64_t>(damages_.size()) + 1 : before->id;
-    if (before == nullptr) {
+    Sighting now{0, sequence_, damage, place_of(damage, frame.pose)};
+    if (now.place) now.id = seen_here(now, *frame.pose, ids);
+    if (now.id == 0) now.id = seen_in_picture(now, ids);
+    const bool is_new = now.id == 0;
+    if (is_new) {
       RoadDamage& found = damages_.emplace_back();
       agreements_.emplace_back();
-      found.id = id;
+      last_.emplace_back();
+      best_places_.emplace_back();
+      now.id = static_cast<std::int64_t>(damages_.size());
+      found.id = now.id;
       found.first_frame = frame.index;
-      measure(frame, damage, found);
     }
-    RoadDamage& known = damages_[static_cast<std::size_t>(id) - 1];
-    Agreement& frames = agreements_[static_cast<std::size_t>(id) - 1];
+    const std::size_t k = static_cast<std::size_t>(now.id) - 1;
+    RoadDamage& known = damages_[k];
+    Agreement& frames = agreements_[k];
     ++known.sightings;
     known.last_frame = frame.index;
     const bool first_damage = !candidate && !frames.is_damage;
-    if (first_damage || (frames.is_damage != candidate && is_better(damage, known.best))) {
+    if (is_new || first_damage || (frames.is_damage != candidate && is_better(damage, known.best))) {
       measure(frame, damage, known);
+      best_places_[k] = now.place;
     }
     frames.is_damage = frames.is_damage || !candidate;
     frames.second = std::max(frames.second, std::min(frames.first, damage.confidence));
     frames.first = std::max(frames.first, damage.confidence);
     known.candidate = !frames.is_damage || !agree(frames, known.sightings);
-    ids.push_back(id);
-    sightings.push_back({id, sequence_, damage});
+    ids.push_back(now.id);
+    last_[k] = now;
+    sightings.push_back(std::move(now));
   };
   for (const Damage& damage : frame.damages) add_one(damage, false);
   for (const Damage& candidate : frame.candidates) add_one(candidate, true);

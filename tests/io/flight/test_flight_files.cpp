@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "io/flight/outline_overlap.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
 #include "roadstereo/io/flight_journal.hpp"
@@ -70,6 +71,7 @@ TEST(FlightFrameJson, RoundTripIsExact) {
   frame.time_s = 1403636579.763555584;
   frame.roll_rad = -0.1 / 3;
   frame.road = {1.0 / 3, 2.0 / 7, -1e-17};
+  frame.pose = {2, {1, 0, 0, 1.0 / 3, 0, 1, 0, 0, 0, 0, 1, 0}};
   frame.warnings = {"a \"quoted\" word", "line\nend"};
   frame.health.row_scale = 1.0 / 3;
   frame.static_mask = {true, 39, 0.1, true};
@@ -84,6 +86,8 @@ TEST(FlightFrameJson, RoundTripIsExact) {
   EXPECT_TRUE(std::isnan(back.health.gain));
   EXPECT_EQ(back.road.a2, frame.road.a2);
   EXPECT_TRUE(std::isnan(back.height_m));
+  EXPECT_EQ(back.pose->piece, 2);
+  EXPECT_EQ(back.pose->road_to_world, frame.pose->road_to_world);
   EXPECT_EQ(back.warnings, frame.warnings);
   EXPECT_TRUE(back.static_mask.judged);
   EXPECT_EQ(back.static_mask.frame, 39);
@@ -176,6 +180,13 @@ TEST_F(FlightJournalFile, RejectsOtherHeader) {
   EXPECT_THROW(FlightJournal::resume(file_, {}), Error);
   fs::remove(file_);
   EXPECT_THROW(FlightJournal::resume(file_, {}), Error);
+}
+
+// A folder can be opened, but not read.
+TEST_F(FlightJournalFile, ReadErrorIsNoEnd) {
+  fs::create_directory(file_);
+  EXPECT_THROW(FlightJournal::resume(file_, {}), SystemError);
+  EXPECT_THROW(read_flight_journal(file_, [](const FlightFrame&) {}), SystemError);
 }
 
 TEST(FlightTables, QuotesCommasAndLeavesUnknownEmpty) {
@@ -299,6 +310,62 @@ TEST(FlightInventory, TwoFramesMustAgree) {
   EXPECT_FALSE(candidate_of({0.2, 0.55, 0.46, 0.1}));
   EXPECT_FALSE(candidate_of({0.3, 0.95})) << "odds of 3/7 and 19";
   EXPECT_TRUE(candidate_of({0.45, 0.45, 0.45}));
+}
+
+/// A frame of a camera `at_m` along the road that sees square potholes of 0.4 m, at those places along it; what the
+/// pictures show of them tells nothing.
+FlightFrame frame_along(std::int64_t index, double at_m, const std::vector<double>& potholes_m, int piece = 0) {
+  std::vector<Damage> damages;
+  for (const double pothole_m : potholes_m) {
+    damages.push_back(pothole(static_cast<int>(100 + 37 * index % 400), static_cast<int>(50 + 83 * index % 300)));
+    const double y = pothole_m - at_m;
+    damages.back().metrics->outline_m = {{-0.2, y - 0.2}, {0.2, y - 0.2}, {0.2, y + 0.2}, {-0.2, y + 0.2}};
+  }
+  FlightFrame frame = frame_of(index, damages);
+  frame.road_status = RoadStatus::found;
+  // World: x right, y down, z ahead; road: x right, y ahead, z up, 1.5 m below the camera.
+  frame.pose = {piece, {1, 0, 0, 0, 0, 0, -1, 1.5, 0, 1, 0, at_m}};
+  return frame;
+}
+
+// Forth, a stop, back, and forth again after frames that saw none of them, 3 m a frame.
+TEST(FlightInventory, KnowsDamageByItsPlace) {
+  FlightInventory inventory;
+  using Ids = std::vector<std::int64_t>;
+  EXPECT_EQ(inventory.add(frame_along(0, 0, {8, 9})), (Ids{1, 2}));
+  EXPECT_EQ(inventory.add(frame_along(1, 3, {9, 8})), (Ids{2, 1}));
+  EXPECT_EQ(inventory.add(frame_along(2, 3, {8.1, 9.1})), (Ids{1, 2})) << "0.1 m off";
+  EXPECT_EQ(inventory.add(frame_along(3, 0, {8})), Ids{1});
+  for (int i = 4; i < 10; ++i) inventory.add(frame_along(i, -3, {}));
+  EXPECT_EQ(inventory.add(frame_along(10, 6, {8.45, 9})), (Ids{3, 2})) << "0.45 m off is another";
+  EXPECT_EQ(inventory.damages().size(), 3U);
+  EXPECT_EQ(inventory.damages()[1].sightings, 4);
+}
+
+// Where no link connects two pieces, the pictures decide; boxes there do not overlap.
+TEST(FlightInventory, PlacesOfOtherPiecesAreUnrelated) {
+  FlightInventory inventory;
+  inventory.add(frame_along(0, 0, {8}));
+  EXPECT_EQ(inventory.add(frame_along(400, 0, {8}, 1)), std::vector<std::int64_t>{2});
+}
+
+// Squares, a triangle and an L, whose overlaps are known.
+TEST(OutlineOverlap, IsShareOfSmallerPolygon) {
+  const auto square = [](double x, double y, double side) {
+    return Outline{{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}};
+  };
+  EXPECT_DOUBLE_EQ(outline_overlap(square(0, 0, 1), square(0.75, 0, 1)), 0.25);
+  EXPECT_DOUBLE_EQ(outline_overlap(square(0, 0, 1), square(0.5, 0.5, 1)), 0.25);
+  EXPECT_DOUBLE_EQ(outline_overlap(square(-5, -5, 10), square(0, 0, 1)), 1);
+  EXPECT_EQ(outline_overlap(square(0, 0, 1), square(1, 0, 1)), 0);
+  EXPECT_EQ(outline_overlap(square(0, 0, 1), square(0, 2, 1)), 0);
+  EXPECT_NEAR(outline_overlap({{0, 0}, {1, 0}, {0, 1}}, square(0, 0, 0.5)), 1, 1e-12);
+  EXPECT_NEAR(outline_overlap({{0, 0}, {1, 0}, {0, 1}}, square(0.5, 0.5, 1)), 0, 1e-12);
+  const Outline corner{{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
+  EXPECT_NEAR(outline_overlap(corner, square(1, 1, 2)), 0, 1e-12) << "beside its inner corner";
+  EXPECT_NEAR(outline_overlap(corner, square(0, 0, 3)), 1, 1e-12);
+  EXPECT_EQ(outline_overlap({}, square(0, 0, 1)), 0);
+  EXPECT_EQ(outline_overlap({{0, 0}, {1, 0}}, square(0, 0, 1)), 0);
 }
 
 TEST(FlightInventory, CutStartsNewDamages) {
