@@ -106,13 +106,16 @@ TEST(ImageOutline, DarkWallInShadowJoins) {
   EXPECT_EQ(joined(square_on_road({4, -4, 3, true})), 1);
 }
 
-// A hole as dark as the cross around it, which reaches to the border.
+// Dark arms of five cells reach from the dark square to the border.
 TEST(ImageOutline, GrowsFewerRowsWhereRoadIsForeshortened) {
+  constexpr int middle = (first + last) / 2;
+  const auto in_arms = [](int at) { return std::abs(at - middle) <= 2; };
+  const auto in_square = [](int at) { return at >= first && at <= last; };
   Image<std::int16_t> grey(side, side);
   for (int v = 0; v < side; ++v) {
     for (int u = 0; u < side; ++u) {
-      const bool in_cross = (u >= first && u <= last) || (v >= first && v <= last);
-      grey(u, v) = static_cast<std::int16_t>((in_cross ? 400 : 1600) + (u * 7 + v * 5) % 8);
+      const bool is_dark = in_arms(u) || in_arms(v) || (in_square(u) && in_square(v));
+      grey(u, v) = static_cast<std::int16_t>((is_dark ? 400 : 1600) + (u * 7 + v * 5) % 8);
     }
   }
   const Image<std::uint8_t> unseen(side, side, 0);
@@ -121,8 +124,7 @@ TEST(ImageOutline, GrowsFewerRowsWhereRoadIsForeshortened) {
     for (int j = first; j <= last; ++j) {
       for (int i = first; i <= last; ++i) region.set(i, j);
     }
-    refine_outline_by_image({grey, 1, radius}, unseen, {}, rows, region);
-    constexpr int middle = (first + last) / 2;
+    refine_outline_by_image({grey, 1, radius}, unseen, BoxMask(), rows, region);
     EXPECT_TRUE(region(middle, last + rows) && region(middle, first - rows)) << rows;
     EXPECT_FALSE(region(middle, last + rows + 1) || region(middle, first - rows - 1)) << rows;
     EXPECT_TRUE(region(last + radius, middle) && region(first - radius, middle)) << rows;
