@@ -115,6 +115,7 @@ struct Figure {
 Measurement fuse(const std::vector<Figure>& figures, double view_factor) {
   constexpr double min_share = 0.05;  // of the variance, for the part that shrinks
   std::vector<double> values;
+  values.reserve(figures.size());
   for (const Figure& figure : figures) values.push_back(figure.measured.value);
   const double typical = upper_median(values);
   double weight = 0, sum = 0, common = 0;
