@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "io/fixed_text.hpp"
+
 namespace roadstereo::io {
 
 CsvLine& CsvLine::add(std::string_view text) {
@@ -39,10 +41,7 @@ CsvLine& CsvLine::add(double value) {
 
 CsvLine& CsvLine::add(double value, int decimals) {
   if (!std::isfinite(value)) return add_nothing();
-  std::array<char, 400> digits{};
-  char* const end = digits.data() + digits.size();
-  text_.append(digits.data(), std::to_chars(digits.data(), end, value, std::chars_format::fixed, decimals).ptr);
-  text_ += ',';
+  text_ += fixed_text(value, decimals) + ',';
   return *this;
 }
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
 
+#include "io/fixed_text.hpp"
 #include "io/text_line.hpp"
 
 namespace roadstereo::io {
@@ -93,11 +93,9 @@ Ticks round_ticks(double lowest, double highest, int max_count) {
 }
 
 std::string number_text(double value, int decimals) {
-  std::array<char, 400> text{};  // more than the largest number has
   const double scale = std::pow(10.0, decimals);
   const double shown = std::round(value * scale) == 0 ? 0.0 : value;
-  char* const end = text.data() + text.size();
-  return {text.data(), std::to_chars(text.data(), end, shown, std::chars_format::fixed, decimals).ptr};
+  return fixed_text(shown, decimals);
 }
 
 }  // namespace roadstereo::io

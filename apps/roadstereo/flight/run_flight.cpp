@@ -34,13 +34,13 @@ class FlightPipeline {
   bool run();
 
  private:
-  void require_unchanged(const io::FlightFrame& last, const std::optional<io::SourcePair>& again) const;
-  void seek(const std::optional<io::FlightFrame>& last);
+  void require_unchanged(const std::optional<io::SourcePair>& again) const;
+  void seek();
   void read();
   void match();
-  AutoMask make_mask(const std::optional<io::FlightFrame>& before) const;
+  AutoMask make_mask() const;
   void reject_other_size(io::SourcePair& pair) const;
-  void match_again(const io::FlightFrame& last, const io::SourcePair& pair, Pipeline& pipeline, FlightJob& job);
+  void match_again(const io::SourcePair& pair, Pipeline& pipeline, FlightJob& job);
   const FramePose& link(FlightJob& job, const StereoCalibration& calibration);
   void add_pose(FlightJob& job);
   void finish();
@@ -56,15 +56,15 @@ class FlightPipeline {
   int finishers_;
   bool from_first_;  ///< reads the frames of an earlier run again
   bool reached_end_ = false;
-  int width_ = 0, height_ = 0;           ///< of the first good pair
-  std::optional<io::FlightFrame> last_;  ///< of an earlier run
-  int first_piece_ = 0;                  ///< of the motion, after those of an earlier run
-  int joined_piece_ = -1;                ///< of this run's odometry: the one that goes on from `last_`
-  RigidTransform to_earlier_{};          ///< from its world to that of the earlier run
-  std::optional<Odometry> odometry_;     ///< without a trajectory
-  BoundedQueue<io::SourcePair> pairs_;   ///< from reader to matcher
-  BoundedQueue<JobPointer> matched_;     ///< from matcher to finishers
-  BoundedQueue<JobPointer> free_;        ///< unused jobs
+  int width_ = 0, height_ = 0;                 ///< of the first good pair
+  const std::optional<io::FlightFrame> last_;  ///< of an earlier run
+  const int first_piece_;                      ///< of the motion, after those of an earlier run
+  int joined_piece_ = -1;                      ///< of this run's odometry: the one that goes on from `last_`
+  RigidTransform to_earlier_{};                ///< from its world to that of the earlier run
+  std::optional<Odometry> odometry_;           ///< without a trajectory
+  BoundedQueue<io::SourcePair> pairs_;         ///< from reader to matcher
+  BoundedQueue<JobPointer> matched_;           ///< from matcher to finishers
+  BoundedQueue<JobPointer> free_;              ///< unused jobs
   Sequencer sequencer_;
   FirstException failure_;
 };
@@ -93,6 +93,8 @@ FlightPipeline::FlightPipeline(const FlightSettings& settings, Flight& flight)
       flight_(flight),
       finishers_(finisher_count(flight.plan.options)),
       from_first_(needs_frames_again(settings, flight)),
+      last_(flight.journal.last()),
+      first_piece_(flight.results.motion_pieces()),
       pairs_(3),
       matched_(static_cast<std::size_t>(finishers_)),
       free_(static_cast<std::size_t>(2 * finishers_) + 1),
@@ -114,34 +116,33 @@ void FlightPipeline::run_stage(const Work& work) {
 }
 
 /// Throws Error unless the pair is the last one of an earlier run.
-void FlightPipeline::require_unchanged(const io::FlightFrame& last, const std::optional<io::SourcePair>& again) const {
-  if (again && io::valid_utf8(again->name) == last.name) return;
-  fail(settings_.source[0], ": the source has changed since this flight was started: frame ", last.index, " was \"",
-       last.name, "\" and is now ", again ? "\"" + again->name + "\"" : "missing", "; start again without --resume");
+void FlightPipeline::require_unchanged(const std::optional<io::SourcePair>& again) const {
+  if (again && io::valid_utf8(again->name) == last_->name) return;
+  fail(settings_.source[0], ": the source has changed since this flight was started: frame ", last_->index, " was \"",
+       last_->name, "\" and is now ", again ? "\"" + again->name + "\"" : "missing", "; start again without --resume");
 }
 
 /// Skips to the last frame of an earlier run, which the motion goes on from, unless all its frames are needed again.
-void FlightPipeline::seek(const std::optional<io::FlightFrame>& last) {
+void FlightPipeline::seek() {
   io::FrameSource& source = flight_.source.source();
-  if (!last || from_first_) return source.skip(settings_.from);
-  source.skip(last->index);
+  if (!last_ || from_first_) return source.skip(settings_.from);
+  source.skip(last_->index);
   std::optional<io::SourcePair> again = flight_.source.next();
-  require_unchanged(*last, again);
+  require_unchanged(again);
   pairs_.put(std::move(*again));
   source.skip(settings_.every - 1);
 }
 
 void FlightPipeline::read() {
-  const std::optional<io::FlightFrame> last = flight_.journal.last();  // before the journal grows
   io::FrameSource& source = flight_.source.source();
-  seek(last);
+  seek();
   while (!flight_.stop.wait(0)) {
     std::optional<io::SourcePair> pair = flight_.source.next();
     if (!pair || (settings_.to && pair->index > *settings_.to)) {
       reached_end_ = true;
       break;
     }
-    if (last && pair->index == last->index) require_unchanged(*last, pair);
+    if (last_ && pair->index == last_->index) require_unchanged(pair);
     if (!pairs_.put(std::move(*pair))) break;
     if (settings_.every > 1) source.skip(settings_.every - 1);
   }
@@ -149,10 +150,10 @@ void FlightPipeline::read() {
 }
 
 /// The mask that an earlier run has found, unless the frames that showed it are matched again.
-AutoMask FlightPipeline::make_mask(const std::optional<io::FlightFrame>& before) const {
+AutoMask FlightPipeline::make_mask() const {
   AutoMask mask(flight_.plan.auto_mask);
-  if (!before || from_first_) return mask;
-  const io::StaticMaskRecord& record = before->static_mask;
+  if (!last_ || from_first_) return mask;
+  const io::StaticMaskRecord& record = last_->static_mask;
   const int white = 255;
   mask.restore(record, record.applied ? read_mask((flight_.folder.path() / static_mask_file).string(), white)
                                       : Image<std::uint8_t>());
@@ -160,12 +161,9 @@ AutoMask FlightPipeline::make_mask(const std::optional<io::FlightFrame>& before)
 }
 
 void FlightPipeline::match() {
-  const std::optional<io::FlightFrame> before = flight_.journal.last();  // before the journal grows
-  last_ = before;
-  first_piece_ = flight_.results.motion_pieces();
   std::optional<Pipeline> pipeline;
   PairWatch watch;
-  AutoMask auto_mask = make_mask(before);
+  AutoMask auto_mask = make_mask();
   const std::int64_t done = flight_.journal.frames();
   std::int64_t sequence = from_first_ ? 0 : done;  // a trajectory begins anew, with the same results
   while (std::optional<io::SourcePair> pair = pairs_.take()) {
@@ -184,15 +182,15 @@ void FlightPipeline::match() {
       height_ = pair->left.height;
       if (!mask.empty()) pipeline->set_mask(mask);
       warm_up(*pipeline, *pair);
-      if (before && (sequence == done || !settings_.trajectory)) pipeline->restore(before->pipeline_state);
+      if (last_ && (sequence == done || !settings_.trajectory)) pipeline->restore(last_->pipeline_state);
     }
-    const bool is_again = !settings_.trajectory && before && pair->index <= before->index;
+    const bool is_again = !settings_.trajectory && last_ && pair->index <= last_->index;
     if (is_again && from_first_) {
       if (pair->error.empty()) auto_mask.look(pair->left.view(), pair->right.view(), pipeline->options().white_level);
       ++sequence;
     }
     if (is_again) {
-      if (pipeline && pair->index == before->index) match_again(*before, *pair, *pipeline, **job);
+      if (pipeline && pair->index == last_->index) match_again(*pair, *pipeline, **job);
       free_.put(std::move(*job));
       continue;
     }
@@ -203,7 +201,7 @@ void FlightPipeline::match() {
       match_frame(*pipeline, flight_.source.calibration(), watch, auto_mask, **job);
       add_pose(**job);
     } else {
-      record_rejected(before, **job);
+      record_rejected(last_, **job);
     }
     if ((*job)->sequence < done) {
       free_.put(std::move(*job));
@@ -222,13 +220,12 @@ void FlightPipeline::reject_other_size(io::SourcePair& pair) const {
 }
 
 /// Matches the last frame of an earlier run again, so that the motion goes on from it. The state of the pipeline stays.
-void FlightPipeline::match_again(const io::FlightFrame& last, const io::SourcePair& pair, Pipeline& pipeline,
-                                 FlightJob& job) {
-  if (!last.pose || !pair.error.empty()) return;
+void FlightPipeline::match_again(const io::SourcePair& pair, Pipeline& pipeline, FlightJob& job) {
+  if (!last_->pose || !pair.error.empty()) return;
   pipeline.process(pair.left.view(), pair.right.view(), job.result);
-  job.frame = last;
+  job.frame = *last_;
   add_pose(job);
-  pipeline.restore(last.pipeline_state);
+  pipeline.restore(last_->pipeline_state);
 }
 
 /// Links a frame with those before it. Returns its pose.

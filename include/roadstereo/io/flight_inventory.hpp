@@ -81,7 +81,9 @@ class FlightInventory {
   static std::optional<Place> place_of(const Damage& damage, const std::optional<FlightPose>& pose);
   std::int64_t seen_here(const Sighting& now, const FlightPose& pose, const Ids& taken) const;
   std::int64_t seen_in_picture(const Sighting& now, const Ids& taken) const;
-  void remember(const std::vector<Sighting>& sightings);
+  void remember(std::vector<Sighting> sightings);
+
+  bool is_recent(const Sighting& last) const;
 
   /// The two largest confidences of the frames that show a damage, and whether it is a damage in one of them.
   struct Agreement {
@@ -90,16 +92,21 @@ class FlightInventory {
   };
   bool agree(const Agreement& frames, std::int64_t sightings) const;
 
+  /// What the next frames need of a damage.
+  struct Known {
+    Sighting last;
+    std::optional<Place> best_place;  ///< in the best frame
+    Agreement frames;
+  };
+
   double min_confidence_;
   std::vector<RoadDamage> damages_;
-  std::vector<Sighting> last_;                     ///< last sighting of each of them
-  std::vector<std::optional<Place>> best_places_;  ///< of the best sighting of each of them
-  std::vector<Agreement> agreements_;              ///< of each of them
-  std::vector<Sighting> recent_;
+  std::vector<Known> known_;           ///< of each of them
   std::array<double, 2> motion_px_{};  ///< image motion from frame to frame
   bool motion_known_ = false;          ///< whether damages of the last frame determined it
   bool had_road_ = false;              ///< whether the last frame had a road
-  std::int64_t sequence_ = 0;
+  std::int64_t sequence_ = 0;          ///< of the last frame, from 1
+  std::int64_t uncut_from_ = 1;        ///< since when the image has not jumped
 };
 
 }  // namespace roadstereo::io

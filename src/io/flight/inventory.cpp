@@ -2,6 +2,7 @@
 #include <cmath>
 #include <iterator>
 #include <tuple>
+#include <utility>
 
 #include "core/log_odds.hpp"
 #include "core/order_statistics.hpp"
@@ -53,6 +54,11 @@ double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) 
 
 bool is_taken(std::int64_t id, const std::vector<std::int64_t>& taken) {
   return std::find(taken.begin(), taken.end(), id) != taken.end();
+}
+
+/// Whether two sightings may be of one damage: of one kind, and not a rut and a pothole in it.
+bool may_be_one(const Damage& one, const Damage& other) {
+  return one.kind == other.kind && !is_part_of_rut(one, other);
 }
 
 /// Takes the measurement in a frame as the best one.
@@ -128,13 +134,13 @@ std::int64_t FlightInventory::seen_here(const Sighting& now, const FlightPose& p
     }
     return outline_overlap(outline, now.damage.metrics->outline_m);
   };
-  for (std::size_t k = 0; k < damages_.size(); ++k) {
-    const Damage& last = last_[k].damage;
-    if (last.kind != now.damage.kind || is_part_of_rut(last, now.damage) || is_taken(damages_[k].id, taken)) continue;
-    const double share = std::max(share_of(last_[k].place), share_of(best_places_[k]));
+  for (const Known& known : known_) {
+    const Sighting& last = known.last;
+    if (!may_be_one(last.damage, now.damage) || is_taken(last.id, taken)) continue;
+    const double share = std::max(share_of(last.place), share_of(known.best_place));
     if (share <= max_share) continue;
     max_share = share;
-    best = damages_[k].id;
+    best = last.id;
   }
   return best;
 }
@@ -144,40 +150,41 @@ std::int64_t FlightInventory::seen_here(const Sighting& now, const FlightPose& p
 std::int64_t FlightInventory::seen_in_picture(const Sighting& now, const Ids& taken) const {
   std::int64_t best = 0;
   double max_share = min_overlap;
-  for (const Sighting& sighting : recent_) {
-    if (sighting.damage.kind != now.damage.kind || is_part_of_rut(sighting.damage, now.damage)) continue;
-    if (is_taken(sighting.id, taken)) continue;
-    if (now.place && sighting.place && now.place->piece == sighting.place->piece) continue;  // seen elsewhere
-    const auto frames = static_cast<double>(sequence_ - sighting.sequence);
+  for (const Known& known : known_) {
+    const Sighting& last = known.last;
+    if (!is_recent(last) || !may_be_one(last.damage, now.damage) || is_taken(last.id, taken)) continue;
+    if (now.place && last.place && now.place->piece == last.place->piece) continue;  // seen elsewhere
+    const auto frames = static_cast<double>(sequence_ - last.sequence);
     const std::array<int, 4>& box = now.damage.box_px;
-    double share = overlap(sighting.damage.box_px, {frames * motion_px_[0], frames * motion_px_[1]}, box);
-    if (share <= min_overlap && !motion_known_) share = overlap(sighting.damage.box_px, {}, box);
+    double share = overlap(last.damage.box_px, {frames * motion_px_[0], frames * motion_px_[1]}, box);
+    if (share <= min_overlap && !motion_known_) share = overlap(last.damage.box_px, {}, box);
     if (share <= max_share) continue;
     max_share = share;
-    best = sighting.id;
+    best = last.id;
   }
   return best;
 }
 
+/// Whether a damage was seen a few frames ago, and the image has not jumped since.
+bool FlightInventory::is_recent(const Sighting& last) const {
+  return last.sequence >= uncut_from_ && sequence_ - last.sequence <= max_gap + 1;
+}
+
 /// Stores the sightings for the next frames and updates the image motion from those seen before. A rut, which runs
 /// through the picture, does not tell it.
-void FlightInventory::remember(const std::vector<Sighting>& sightings) {
+void FlightInventory::remember(std::vector<Sighting> sightings) {
   std::vector<double> along_u, along_v;
-  for (const Sighting& now : sightings) {
-    const auto before = std::find_if(recent_.begin(), recent_.end(), [&](const Sighting& s) { return s.id == now.id; });
-    if (before == recent_.end() || is_rut(now.damage)) continue;
-    const auto frames = static_cast<double>(now.sequence - before->sequence);
-    along_u.push_back((now.damage.centroid_px[0] - before->damage.centroid_px[0]) / frames);
-    along_v.push_back((now.damage.centroid_px[1] - before->damage.centroid_px[1]) / frames);
+  for (Sighting& now : sightings) {
+    Sighting& last = known_[static_cast<std::size_t>(now.id) - 1].last;
+    if (is_recent(last) && !is_rut(now.damage)) {
+      const auto frames = static_cast<double>(now.sequence - last.sequence);
+      along_u.push_back((now.damage.centroid_px[0] - last.damage.centroid_px[0]) / frames);
+      along_v.push_back((now.damage.centroid_px[1] - last.damage.centroid_px[1]) / frames);
+    }
+    last = std::move(now);
   }
   motion_known_ = !along_u.empty();
   if (motion_known_) motion_px_ = {upper_median(along_u), upper_median(along_v)};
-  const auto outdated = [&](const Sighting& old) {
-    return sequence_ - old.sequence > max_gap ||
-           std::any_of(sightings.begin(), sightings.end(), [&](const Sighting& now) { return now.id == old.id; });
-  };
-  recent_.erase(std::remove_if(recent_.begin(), recent_.end(), outdated), recent_.end());
-  recent_.insert(recent_.end(), sightings.begin(), sightings.end());
 }
 
 bool FlightInventory::agree(const Agreement& frames, std::int64_t sightings) const {
@@ -188,7 +195,7 @@ bool FlightInventory::agree(const Agreement& frames, std::int64_t sightings) con
 std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
   ++sequence_;
   const bool has_road = frame.status == FrameStatus::good && frame.road_status != RoadStatus::none;
-  if (has_road && had_road_ && frame.road_status != RoadStatus::tracked) recent_.clear();
+  if (has_road && had_road_ && frame.road_status != RoadStatus::tracked) uncut_from_ = sequence_;
   had_road_ = has_road;
   Ids ids;
   std::vector<Sighting> sightings;
@@ -199,34 +206,31 @@ std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
     const bool is_new = now.id == 0;
     if (is_new) {
       RoadDamage& found = damages_.emplace_back();
-      agreements_.emplace_back();
-      last_.emplace_back();
-      best_places_.emplace_back();
+      known_.emplace_back();
       now.id = static_cast<std::int64_t>(damages_.size());
       found.id = now.id;
       found.first_frame = frame.index;
     }
-    const std::size_t k = static_cast<std::size_t>(now.id) - 1;
-    RoadDamage& known = damages_[k];
-    Agreement& frames = agreements_[k];
-    ++known.sightings;
-    known.last_frame = frame.index;
+    RoadDamage& on_road = damages_[static_cast<std::size_t>(now.id) - 1];
+    Known& known = known_[static_cast<std::size_t>(now.id) - 1];
+    Agreement& frames = known.frames;
+    ++on_road.sightings;
+    on_road.last_frame = frame.index;
     const bool first_damage = !candidate && !frames.is_damage;
-    if (is_new || first_damage || (frames.is_damage != candidate && is_better(damage, known.best))) {
-      measure(frame, damage, known);
-      best_places_[k] = now.place;
+    if (is_new || first_damage || (frames.is_damage != candidate && is_better(damage, on_road.best))) {
+      measure(frame, damage, on_road);
+      known.best_place = now.place;
     }
     frames.is_damage = frames.is_damage || !candidate;
     frames.second = std::max(frames.second, std::min(frames.first, damage.confidence));
     frames.first = std::max(frames.first, damage.confidence);
-    known.candidate = !frames.is_damage || !agree(frames, known.sightings);
+    on_road.candidate = !frames.is_damage || !agree(frames, on_road.sightings);
     ids.push_back(now.id);
-    last_[k] = now;
     sightings.push_back(std::move(now));
   };
   for (const Damage& damage : frame.damages) add_one(damage, false);
   for (const Damage& candidate : frame.candidates) add_one(candidate, true);
-  remember(sightings);
+  remember(std::move(sightings));
   return ids;
 }
 

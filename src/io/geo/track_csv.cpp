@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <limits>
 #include <optional>
 #include <span>
 
 #include "io/calibration_formats.hpp"
+#include "io/fixed_text.hpp"
 #include "io/geo/track_formats.hpp"
 #include "roadstereo/error.hpp"
 
@@ -134,13 +134,6 @@ double standard_error(const std::string& where, const std::optional<Column>& col
   return value > 0 ? value : unknown;
 }
 
-/// With six decimals, whatever the locale.
-std::string decimal_text(double value) {
-  std::array<char, 400> text{};
-  char* const end = text.data() + text.size();
-  return {text.data(), std::to_chars(text.data(), end, value, std::chars_format::fixed, 6).ptr};
-}
-
 /// A row of PX4's vehicle_gps_position. Integers are 1e-7 degrees and millimetres in the columns lat, lon, alt.
 std::optional<TrackPoint> read_px4_row(const std::string& where, const Columns& columns,
                                        const std::vector<std::string_view>& cells) {
@@ -149,12 +142,12 @@ std::optional<TrackPoint> read_px4_row(const std::string& where, const Columns& 
   if (microseconds == 0) return std::nullopt;  // no fix yet
   const bool whole = columns.lat.name == "lat";
   TrackPoint point;
-  point.time_s = parse_any_time(where, columns.time.name, decimal_text(1e-6 * microseconds));
+  point.time_s = parse_any_time(where, columns.time.name, fixed_text(1e-6 * microseconds, 6));
   const double degrees = whole ? 1e-7 : 1;
   point.lat_deg = degrees * number(columns.lat);
   point.lon_deg = degrees * number(columns.lon);
-  parse_latitude(where, columns.lat.name, decimal_text(point.lat_deg));
-  parse_longitude(where, columns.lon.name, decimal_text(point.lon_deg));
+  parse_latitude(where, columns.lat.name, fixed_text(point.lat_deg, 6));
+  parse_longitude(where, columns.lon.name, fixed_text(point.lon_deg, 6));
   if (columns.alt) point.alt_m = (whole ? 1e-3 : 1) * number(*columns.alt);
   return point;
 }
