@@ -136,6 +136,11 @@ struct DamageEvidence {
   /// of the region that lies in the rut; else 0. A rut continues along the road and is as gentle as its relief.
   double rut_significance = 0;
 
+  /// Expected number of other regions of the image that are noise: twice the smaller of the sums of 1 − confidence over
+  /// its other hollows and over its other protrusions, since noise makes as many of both. 0 without a search for
+  /// protrusions.
+  double clutter = 0;
+
   /// Maximum depth in standard errors, without the error of smoothing, which only makes a damage shallower. Below 3 the
   /// damage is unresolvable, unless its mean depth is at least three of its standard errors.
   double depth_significance = 0;

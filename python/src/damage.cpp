@@ -92,6 +92,9 @@ void bind_one_damage(py::module_& module) {
       .field("rut_significance", &Evidence::rut_significance,
              "Depth below a straightedge across the road of the rut that the region lies in, in standard errors, times "
              "the share of the region that does; 0 if it lies in none.")
+      .field("clutter", &Evidence::clutter,
+             "Expected number of other regions of the image that are noise: twice the smaller of the sums of "
+             "1 - confidence over its other hollows and over its other protrusions.")
       .field("depth_significance", &Evidence::depth_significance,
              "Maximum depth, standard errors from noise alone; below 3 the depth is unresolvable.");
   Record<Damage>(module, "Damage", "One damage: a connected component of the left image.")

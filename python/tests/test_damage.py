@@ -24,7 +24,7 @@ def columns(damage):
         row[name] = getattr(damage, name)
     for name in ("contrast_sigmas", "significance", "steepness", "road_share", "border_share", "unseen_share",
                  "surface_significance", "range_vote", "specular_excess", "texture_share", "pixel_significance",
-                 "likely_wall_slope", "extent", "rut_significance", "depth_significance"):
+                 "likely_wall_slope", "extent", "rut_significance", "clutter", "depth_significance"):
         value = getattr(evidence, name)
         row[name] = None if math.isnan(value) else value  # a protrusion has no likely slope
     for name in ("length_m", "width_m", "diameter_m", "distance_m", "resolvable_depth_m", "wall_slope", "quantity",

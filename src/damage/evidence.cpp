@@ -80,6 +80,11 @@ double wall_log_odds(double border_share, double slope) {
          square * (per_square + per_fourth_power * square + per_square_and_log_slope * steeper);
 }
 
+/// Log-odds of damage among regions that are noise: the odds of one more grow in proportion to their number.
+double clutter_log_odds(double clutter) {
+  return -std::log1p(clutter);
+}
+
 /// Share to which gentle walls, extent and the border say nothing against damage: a rut is gentle and runs on beyond
 /// the picture.
 double rut_share(double significance) {
@@ -103,7 +108,8 @@ double DamageEvidence::confidence() const {
   return probability_of(log_odds + surface_log_odds(surface_significance, likely_wall_slope, gentle) +
                         gentle * (wall_log_odds(border_share, likely_wall_slope) + extent_log_odds(extent)) +
                         range_log_odds(range_vote) + pixel_log_odds(pixel_significance) +
-                        specular_log_odds(specular_excess) + texture_log_odds(texture_share));
+                        specular_log_odds(specular_excess) + texture_log_odds(texture_share) +
+                        clutter_log_odds(clutter));
 }
 
 }  // namespace roadstereo

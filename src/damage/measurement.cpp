@@ -8,6 +8,7 @@
 
 #include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
+#include "damage/clutter.hpp"
 #include "damage/damage_maps.hpp"
 #include "damage/distress.hpp"
 #include "damage/metric_measurement.hpp"
@@ -287,6 +288,7 @@ std::vector<std::uint16_t> separate_candidates(const DamageOptions& options, Dam
   result.candidates.clear();
   const std::size_t old_ids = measured.size() + 1;
   std::erase_if(measured, [&](const Damage& damage) { return !is_within_limits(damage, options); });
+  add_clutter(measured);
   std::stable_sort(measured.begin(), measured.end(), [](const Damage& one, const Damage& other) {
     return one.max_depth().value > other.max_depth().value;
   });

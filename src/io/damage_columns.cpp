@@ -145,6 +145,7 @@ std::vector<DamageColumn> pixel_columns() {
           {"likely_wall_slope", evidence<&DamageEvidence::likely_wall_slope>},
           {"extent", evidence<&DamageEvidence::extent>},
           {"rut_significance", evidence<&DamageEvidence::rut_significance>},
+          {"clutter", evidence<&DamageEvidence::clutter>},
           {"depth_significance", evidence<&DamageEvidence::depth_significance>},
           {"cut_by_border", [](const Damage& d) -> DamageValue { return d.cut_by_border; }},
           {"ends_search", [](const Damage& d) -> DamageValue { return d.ends_search; }}};

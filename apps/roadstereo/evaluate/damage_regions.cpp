@@ -53,6 +53,7 @@ nlohmann::ordered_json regions_json(const std::vector<FoundRegion>& regions) {
                     {"likely_wall_slope", number(evidence.likely_wall_slope)},
                     {"extent", number(evidence.extent)},
                     {"rut_significance", number(evidence.rut_significance)},
+                    {"clutter", number(evidence.clutter)},
                     {"confidence", number(region.damage.confidence)},
                     {"is_damage", region.is_damage}});
   }

@@ -117,6 +117,7 @@ void each_field(DamageEvidence& evidence, Visit& visit) {
   visit("likely_wall_slope", evidence.likely_wall_slope);
   visit("extent", evidence.extent);
   visit("rut_significance", evidence.rut_significance);
+  visit("clutter", evidence.clutter);
   visit("depth_significance", evidence.depth_significance);
 }
 
