@@ -1,0 +1,221 @@
+// The inventory of a flight's damages.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "roadstereo/io/flight_inventory.hpp"
+#include "tests/io/flight/flight_frames.hpp"
+
+namespace roadstereo::io {
+namespace {
+
+TEST(FlightInventory, JoinsMovingDamage) {
+  FlightInventory inventory;
+  for (int i = 0; i < 5; ++i) {
+    const std::vector<std::int64_t> ids =
+        inventory.add(frame_of(i, {pothole(100, 50 + 25 * i, 0.05, 0.01 - 0.001 * i), pothole(300, 50 + 25 * i)}));
+    EXPECT_EQ(ids, (std::vector<std::int64_t>{1, 2}));
+  }
+  ASSERT_EQ(inventory.damages().size(), 2U);
+  EXPECT_EQ(inventory.damages()[0].sightings, 5);
+  EXPECT_EQ(inventory.damages()[0].frame, 4) << "the least error";
+  EXPECT_EQ(inventory.damages()[1].frame, 0) << "the first of equals";
+}
+
+TEST(FlightInventory, LearnsImageMotion) {
+  FlightInventory inventory;
+  int v = 20;
+  // Steps of 45 px: boxes of 40 px do not overlap, once the motion has been learned from steps that grow.
+  for (const int step : {0, 20, 30, 38, 45, 45, 45}) {
+    v += step;
+    EXPECT_EQ(inventory.add(frame_of(v, {pothole(100, v)})), std::vector<std::int64_t>{1}) << v;
+  }
+}
+
+// A rut stays where it is in the picture while the road moves; a pothole in it moves 25 px a frame and is not the rut.
+TEST(FlightInventory, PotholeInRutIsAnotherDamage) {
+  FlightInventory inventory;
+  Damage rut = pothole(100, 180);
+  rut.metrics->distress = Distress::rut;
+  rut.box_px = {60, 0, 160, 359};
+  for (int i = 0; i < 12; ++i) {
+    const bool has_pothole = i >= 3 && i < 9;
+    const std::vector<std::int64_t> ids = inventory.add(
+        frame_of(i, has_pothole ? std::vector{pothole(100, 40 + 25 * i), rut} : std::vector{rut}));  // deepest first
+    EXPECT_EQ(ids.back(), 1) << i;
+    EXPECT_EQ(ids.front(), has_pothole ? 2 : 1) << i;
+  }
+  EXPECT_EQ(inventory.damages().size(), 2U);
+}
+
+TEST(FlightInventory, BridgesOneMissedFrameOnly) {
+  FlightInventory inventory;
+  inventory.add(frame_of(0, {pothole(100, 100)}));
+  inventory.add(frame_of(1, {}));
+  EXPECT_EQ(inventory.add(frame_of(2, {pothole(100, 100)})), std::vector<std::int64_t>{1});
+  for (int i = 3; i < 6; ++i) inventory.add(frame_of(i, {}));
+  EXPECT_EQ(inventory.add(frame_of(6, {pothole(100, 100)})), std::vector<std::int64_t>{2});
+  Damage bump = pothole(100, 100);
+  bump.kind = DamageKind::protrusion;
+  EXPECT_EQ(inventory.add(frame_of(7, {bump})), std::vector<std::int64_t>{3}) << "a bump is no pothole";
+}
+
+/// A candidate that is a damage in a later frame is a damage, measured there, although its error was smaller before.
+TEST(FlightInventory, CandidateBecomesDamage) {
+  FlightInventory inventory;
+  FlightFrame first = frame_of(4, {});
+  first.candidates = {pothole(100, 100, 0.02, 0.001), pothole(300, 100)};
+  EXPECT_EQ(inventory.add(first), (std::vector<std::int64_t>{1, 2}));
+  EXPECT_TRUE(inventory.damages()[0].candidate);
+  FlightFrame second = frame_of(5, {pothole(100, 110, 0.04, 0.002)});
+  second.candidates = {pothole(300, 110)};
+  EXPECT_EQ(inventory.add(second), (std::vector<std::int64_t>{1, 2}));
+  FlightFrame third = frame_of(6, {});
+  third.candidates = {pothole(100, 120, 0.01, 0.0001)};
+  inventory.add(third);
+  const RoadDamage& damage = inventory.damages()[0];
+  EXPECT_FALSE(damage.candidate);
+  EXPECT_EQ(damage.best.metrics->max_depth_m.value, 0.04);
+  EXPECT_EQ(damage.sightings, 3);
+  EXPECT_EQ(damage.first_frame, 4);
+  EXPECT_EQ(damage.last_frame, 6);
+  EXPECT_EQ(damage.frame, 5);
+  EXPECT_EQ(worst_first(inventory.damages(), false).size(), 1U);
+  ASSERT_EQ(worst_first(inventory.damages(), true).size(), 1U);
+  EXPECT_EQ(worst_first(inventory.damages(), true)[0].id, 2);
+}
+
+// Noise is sure of itself in one frame of many.
+TEST(FlightInventory, TwoFramesMustAgree) {
+  const auto candidate_of = [](const std::vector<double>& confidences) {
+    FlightInventory inventory;
+    for (std::size_t i = 0; i < confidences.size(); ++i) {
+      Damage damage = pothole(100, 100);
+      damage.confidence = confidences[i];
+      const bool is_damage = damage.confidence >= 0.5;
+      FlightFrame frame =
+          frame_of(static_cast<std::int64_t>(i), is_damage ? std::vector{damage} : std::vector<Damage>());
+      if (!is_damage) frame.candidates = {damage};
+      inventory.add(frame);
+    }
+    return inventory.damages().at(0).candidate;
+  };
+  EXPECT_FALSE(candidate_of({0.55}));
+  EXPECT_TRUE(candidate_of({0.2, 0.55, 0.3}));
+  EXPECT_FALSE(candidate_of({0.2, 0.55, 0.46, 0.1}));
+  EXPECT_FALSE(candidate_of({0.3, 0.95})) << "odds of 3/7 and 19";
+  EXPECT_TRUE(candidate_of({0.45, 0.45, 0.45}));
+}
+
+/// A frame of a camera `at_m` along the road that sees square potholes of 0.4 m, at those places along it; what the
+/// pictures show of them tells nothing.
+FlightFrame frame_along(std::int64_t index, double at_m, const std::vector<double>& potholes_m, int piece = 0) {
+  std::vector<Damage> damages;
+  for (const double pothole_m : potholes_m) {
+    damages.push_back(pothole(static_cast<int>(100 + 37 * index % 400), static_cast<int>(50 + 83 * index % 300)));
+    const double y = pothole_m - at_m;
+    damages.back().metrics->outline_m = {{-0.2, y - 0.2}, {0.2, y - 0.2}, {0.2, y + 0.2}, {-0.2, y + 0.2}};
+  }
+  FlightFrame frame = frame_of(index, damages);
+  frame.road_status = RoadStatus::found;
+  // World: x right, y down, z ahead; road: x right, y ahead, z up, 1.5 m below the camera.
+  frame.pose = {piece, {1, 0, 0, 0, 0, 0, -1, 1.5, 0, 1, 0, at_m}};
+  return frame;
+}
+
+// Forth, a stop, back, and forth again after frames that saw none of them, 3 m a frame.
+TEST(FlightInventory, KnowsDamageByItsPlace) {
+  FlightInventory inventory;
+  using Ids = std::vector<std::int64_t>;
+  EXPECT_EQ(inventory.add(frame_along(0, 0, {8, 9})), (Ids{1, 2}));
+  EXPECT_EQ(inventory.add(frame_along(1, 3, {9, 8})), (Ids{2, 1}));
+  EXPECT_EQ(inventory.add(frame_along(2, 3, {8.1, 9.1})), (Ids{1, 2})) << "0.1 m off";
+  EXPECT_EQ(inventory.add(frame_along(3, 0, {8})), Ids{1});
+  for (int i = 4; i < 10; ++i) inventory.add(frame_along(i, -3, {}));
+  EXPECT_EQ(inventory.add(frame_along(10, 6, {8.45, 9})), (Ids{3, 2})) << "0.45 m off is another";
+  EXPECT_EQ(inventory.damages().size(), 3U);
+  EXPECT_EQ(inventory.damages()[1].sightings, 4);
+}
+
+// Where no link connects two pieces, the pictures decide; boxes there do not overlap.
+TEST(FlightInventory, PlacesOfOtherPiecesAreUnrelated) {
+  FlightInventory inventory;
+  inventory.add(frame_along(0, 0, {8}));
+  EXPECT_EQ(inventory.add(frame_along(400, 0, {8}, 1)), std::vector<std::int64_t>{2});
+}
+
+TEST(FlightInventory, CutStartsNewDamages) {
+  FlightInventory inventory;
+  inventory.add(frame_of(0, {pothole(100, 100)}));
+  FlightFrame cut = frame_of(1, {pothole(100, 100)});
+  cut.road_status = RoadStatus::found;
+  EXPECT_EQ(inventory.add(cut), std::vector<std::int64_t>{2});
+  FlightFrame refused = frame_of(2, {});
+  refused.status = FrameStatus::rejected;
+  refused.road_status = RoadStatus::found;
+  inventory.add(refused);
+  EXPECT_EQ(inventory.add(frame_of(3, {pothole(100, 100)})), std::vector<std::int64_t>{2})
+      << "over a frame that is missing";
+}
+
+// One that is medium or high, about as likely, is worse than a minor one, and than a medium one if that is shallower.
+TEST(FlightInventory, UncertainSeverityRanksAsExpectedClass) {
+  FlightInventory inventory;
+  std::vector<Damage> damages{pothole(100, 100), pothole(300, 100), pothole(500, 100)};
+  const auto grade = [&](std::size_t k, Severity severity, const SeverityProbabilities& of) {
+    damages[k].metrics->severity = severity;
+    damages[k].metrics->severity_probabilities = of;
+  };
+  grade(0, Severity::minor, {.minor = 1, .low = 0, .medium = 0, .high = 0});
+  grade(1, Severity::uncertain, {.minor = 0, .low = 0, .medium = 0.5, .high = 0.5});
+  grade(2, Severity::medium, {.minor = 0, .low = 0, .medium = 1, .high = 0});
+  inventory.add(frame_of(0, damages));
+  std::vector<std::int64_t> order;
+  for (const RoadDamage& damage : worst_first(inventory.damages(), false)) order.push_back(damage.id);
+  EXPECT_EQ(order, (std::vector<std::int64_t>{2, 3, 1}));
+}
+
+TEST(FlightInventory, FrameWithoutRoadIsNoCut) {
+  FlightInventory inventory;
+  inventory.add(frame_of(0, {pothole(100, 100)}));
+  FlightFrame glare = frame_of(1, {});
+  glare.road_status = RoadStatus::none;
+  inventory.add(glare);
+  FlightFrame again = frame_of(2, {pothole(100, 100)});
+  again.road_status = RoadStatus::found;
+  EXPECT_EQ(inventory.add(again), std::vector<std::int64_t>{1});
+}
+
+// No damage tells that the camera has stopped, or drives back: boxes of 40 px would have to be 45 px farther down.
+TEST(FlightInventory, MotionMayEndWhileNoDamageIsSeen) {
+  for (const int step : {0, 10, -10}) {
+    FlightInventory inventory;
+    for (const int v : {20, 20, 40, 70, 108, 153, 198}) inventory.add(frame_of(v, {pothole(100, v)}));
+    ASSERT_EQ(inventory.damages().size(), 1U);
+    for (int i = 0; i < 4; ++i) inventory.add(frame_of(200 + i, {}));
+    for (int i = 0; i < 5; ++i) {
+      EXPECT_EQ(inventory.add(frame_of(204 + i, {pothole(100, 150 + i * step)})), std::vector<std::int64_t>{2}) << step;
+    }
+  }
+}
+
+TEST(FlightInventory, PrefersWholeSightingsAndSortsBySeverity) {
+  FlightInventory inventory;
+  Damage cut = pothole(100, 100, 0.05, 0.0001);
+  cut.cut_by_border = true;
+  inventory.add(frame_of(0, {cut, pothole(300, 100, 0.03)}));
+  inventory.add(frame_of(1, {pothole(100, 100, 0.04, 0.002), pothole(300, 100, 0.03)}));
+  EXPECT_EQ(inventory.damages()[0].frame, 1);
+  Damage deep = pothole(400, 300, 0.02);
+  deep.metrics->severity = Severity::high;
+  inventory.add(frame_of(2, {deep}));
+  const std::vector<RoadDamage> worst = worst_first(inventory.damages(), false);
+  ASSERT_EQ(worst.size(), 3U);
+  EXPECT_EQ(worst[0].id, 3) << "severity before depth";
+  EXPECT_EQ(worst[1].id, 1);
+}
+
+}  // namespace
+}  // namespace roadstereo::io
