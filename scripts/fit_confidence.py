@@ -116,7 +116,7 @@ def main():
     y = np.array([float(row["is_damage"]) for row in rows])
     offset = np.array([surface_log_odds(row["surface_significance"], row["likely_wall_slope"], gentle_share(row)) +
                        range_log_odds(row["range_vote"]) + specular_log_odds(row["specular_excess"]) +
-                       texture_log_odds(row["texture_share"]) - math.log1p(row["clutter"]) +
+                       texture_log_odds(row["texture_share"]) - math.log1p(max(0, row["clutter"] - 2)) +
                        pixel_log_odds(row["pixel_significance"]) for row in rows])
     program = np.array([row["confidence"] for row in rows])
     weight = np.ones(len(rows))

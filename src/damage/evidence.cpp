@@ -80,9 +80,11 @@ double wall_log_odds(double border_share, double slope) {
          square * (per_square + per_fourth_power * square + per_square_and_log_slope * steeper);
 }
 
-/// Log-odds of damage among regions that are noise: the odds of one more grow in proportion to their number.
+/// Log-odds of damage among regions that are noise: the odds of one more grow in proportion to their number. One of
+/// each kind is not unusual on a rough road.
 double clutter_log_odds(double clutter) {
-  return -std::log1p(clutter);
+  constexpr double usual = 2;
+  return -std::log1p(std::max(0.0, clutter - usual));
 }
 
 /// Share to which gentle walls, extent and the border say nothing against damage: a rut is gentle and runs on beyond

@@ -38,7 +38,7 @@ TEST(Clutter, HollowsAloneAreNone) {
   EXPECT_TRUE(none.empty());
 }
 
-// Among n regions that are noise the odds of damage are those of one divided by 1 + n.
+// Among n regions that are noise the odds of damage are those of one divided by n − 1; two are usual.
 TEST(Clutter, DividesOdds) {
   const auto odds = [](const Damage& damage) { return damage.confidence / (1 - damage.confidence); };
   std::vector<Damage> alone{region(DamageKind::depression, 0.9)};
@@ -50,7 +50,11 @@ TEST(Clutter, DividesOdds) {
   }
   add_clutter(among);
   EXPECT_NEAR(among[0].evidence.clutter, 4.5, 1e-12);
-  EXPECT_NEAR(odds(alone[0]) / odds(among[0]), 5.5, 1e-9);
+  EXPECT_NEAR(odds(alone[0]) / odds(among[0]), 3.5, 1e-9);
+  among.resize(3);
+  among[0] = alone[0];
+  add_clutter(among);
+  EXPECT_EQ(among[0].confidence, alone[0].confidence) << "one hollow and one bump";
 }
 
 }  // namespace
