@@ -44,6 +44,12 @@ def surface_log_odds(significance, slope, gentle):
     return per_standard_error_of_hollow * min(above, max_standard_errors) + slope_log_odds
 
 
+def clutter_log_odds(clutter):
+    """As in src/damage/evidence.cpp; it is not fitted."""
+    usual = 2
+    return -math.log1p(max(0, clutter - usual))
+
+
 def range_log_odds(vote):
     """As in src/damage/evidence.cpp; it is not fitted."""
     per_vote, even_odds = 20, 0.3
@@ -116,7 +122,7 @@ def main():
     y = np.array([float(row["is_damage"]) for row in rows])
     offset = np.array([surface_log_odds(row["surface_significance"], row["likely_wall_slope"], gentle_share(row)) +
                        range_log_odds(row["range_vote"]) + specular_log_odds(row["specular_excess"]) +
-                       texture_log_odds(row["texture_share"]) - math.log1p(max(0, row["clutter"] - 2)) +
+                       texture_log_odds(row["texture_share"]) + clutter_log_odds(row["clutter"]) +
                        pixel_log_odds(row["pixel_significance"]) for row in rows])
     program = np.array([row["confidence"] for row in rows])
     weight = np.ones(len(rows))
