@@ -119,10 +119,6 @@ class RightRow {
   };
 
   void read_aligned(const Places& columns, std::size_t lanes, Lanes<float>& values) const {
-    if (v_ < 1 || v_ + 2 >= image_.height()) {
-      std::fill_n(values.begin(), lanes, unknown);
-      return;
-    }
     RowPixels pixels;
     for (std::size_t l = 0; l < lanes; ++l) pixels.load(l, image_.row(v_) + columns.first[l]);
     for (std::size_t l = 0; l < lanes; ++l) values[l] = pixels.at(columns, l);

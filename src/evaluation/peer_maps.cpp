@@ -1,5 +1,6 @@
 #include "evaluation/peer_maps.hpp"
 
+#include <cmath>
 #include <limits>
 
 namespace roadstereo::io {
@@ -8,7 +9,7 @@ cv::Mat grey_bytes(const GreyImage& grey) {
   cv::Mat bytes(grey.height(), grey.width(), CV_8U);
   for (int v = 0; v < grey.height(); ++v) {
     for (int u = 0; u < grey.width(); ++u)
-      bytes.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(grey(u, v) / grey_scale);
+      bytes.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(std::lround(grey(u, v) / double{grey_scale}));
   }
   return bytes;
 }

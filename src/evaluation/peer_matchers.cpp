@@ -1,24 +1,14 @@
 #include "evaluation/peer_matchers.hpp"
 
-#include <cmath>
 #include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
+#include "evaluation/peer_maps.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
 namespace {
-
-cv::Mat to_bytes(const GreyImage& image) {
-  cv::Mat bytes(image.height(), image.width(), CV_8U);
-  for (int v = 0; v < image.height(); ++v) {
-    for (int u = 0; u < image.width(); ++u) {
-      bytes.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(std::lround(image(u, v) / double{grey_scale}));
-    }
-  }
-  return bytes;
-}
 
 cv::Ptr<cv::StereoMatcher> make_matcher(const std::string& name, int disparities) {
   constexpr int bm_block = 11;
@@ -59,8 +49,8 @@ PeerMatcher::PeerMatcher(PeerMatcher&&) noexcept = default;
 PeerMatcher& PeerMatcher::operator=(PeerMatcher&&) noexcept = default;
 
 void PeerMatcher::set_pair(const GreyImage& reference, const GreyImage& target) {
-  state_->reference = to_bytes(reference);
-  state_->target = to_bytes(target);
+  state_->reference = grey_bytes(reference);
+  state_->target = grey_bytes(target);
 }
 
 void PeerMatcher::match() {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <list>
-#include <memory_resource>
 #include <set>
 #include <utility>
 
@@ -136,7 +135,7 @@ std::vector<LoopLink> LoopSearch::State::find(const Trajectory& odometry, const 
   std::vector<LoopLink> loops;
   if (views.empty()) return loops;
   const LinkEstimator estimator(store.calibration(full), options);
-  std::pmr::unsynchronized_pool_resource memory{{.max_blocks_per_chunk = 1, .largest_required_pool_block = 4U << 20}};
+  ScratchMemory memory;
   const ScratchScope scratch(memory);
   for (std::size_t to = 0; to < views.size(); ++to) {
     for (const LoopCandidates& visit : loop_candidates(views, to, odometry, best)) {

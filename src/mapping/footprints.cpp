@@ -30,4 +30,14 @@ void add_cells_inside(const std::array<std::array<double, 2>, 4>& corners, MapCe
   }
 }
 
+CellBounds bounds_of(const MapCells& cells) {
+  if (cells.empty()) return {};
+  CellBounds bounds{cells.front(), cells.back()};  // in the order of rows
+  for (const auto& cell : cells) {
+    bounds.first[0] = std::min(bounds.first[0], cell[0]);
+    bounds.last[0] = std::max(bounds.last[0], cell[0]);
+  }
+  return bounds;
+}
+
 }  // namespace roadstereo

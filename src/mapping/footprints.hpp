@@ -16,6 +16,18 @@ inline bool cell_less(const std::array<std::int32_t, 2>& a, const std::array<std
 /// Adds the cells of `footprint_m` whose centres lie in a convex quadrilateral, metres, its corners in order.
 void add_cells_inside(const std::array<std::array<double, 2>, 4>& corners, MapCells& cells);
 
+/// Bounding box of cells; without any it overlaps none.
+struct CellBounds {
+  std::array<std::int32_t, 2> first{0, 0}, last{-1, -1};
+
+  bool overlaps(const CellBounds& other) const {
+    return first[0] <= other.last[0] && other.first[0] <= last[0] && first[1] <= other.last[1] &&
+           other.first[1] <= last[1];
+  }
+};
+
+CellBounds bounds_of(const MapCells& cells);
+
 /// Smallest overlap of two findings of one damage, as `overlap_share`.
 inline constexpr double min_overlap_share = 0.2;
 

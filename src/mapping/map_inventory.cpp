@@ -18,26 +18,30 @@
 namespace roadstereo {
 namespace {
 
-void add_cells(const MapCells& more, MapCells& cells) {
-  MapCells all;
-  std::set_union(cells.begin(), cells.end(), more.begin(), more.end(), std::back_inserter(all), cell_less);
-  cells = std::move(all);
-}
-
 /// Findings of one damage.
 struct Group {
   DamageKind kind = DamageKind::depression;
   MapCells footprint;  ///< of the confident ones, or of the first
+  CellBounds bounds;   ///< of the footprint
   const MapDamage* in_map = nullptr;
   std::vector<const DamageSighting*> sightings;
 };
+
+void add_cells(const MapCells& more, Group& group) {
+  MapCells all;
+  std::set_union(group.footprint.begin(), group.footprint.end(), more.begin(), more.end(), std::back_inserter(all),
+                 cell_less);
+  group.footprint = std::move(all);
+  group.bounds = bounds_of(group.footprint);
+}
 
 /// Returns the group with the largest overlap, or null.
 Group* group_of(const MapDamage& found, std::vector<Group>& groups) {
   Group* best = nullptr;
   double max_share = min_overlap_share;
+  const CellBounds bounds = bounds_of(found.footprint);
   for (Group& group : groups) {
-    if (group.kind != found.damage.kind) continue;
+    if (group.kind != found.damage.kind || !group.bounds.overlaps(bounds)) continue;
     const double share = overlap_share(group.footprint, found.footprint);
     if (share < max_share) continue;
     max_share = share;
@@ -52,14 +56,15 @@ Group& join_group(const MapDamage& found, double min_confidence, std::vector<Gro
     Group fresh;
     fresh.kind = found.damage.kind;
     fresh.footprint = found.footprint;
+    fresh.bounds = bounds_of(found.footprint);
     return groups.emplace_back(std::move(fresh));
   }
-  if (found.damage.confidence >= min_confidence) add_cells(found.footprint, known->footprint);
+  if (found.damage.confidence >= min_confidence) add_cells(found.footprint, *known);
   return *known;
 }
 
 void move_into(Group& from, Group& into) {
-  add_cells(from.footprint, into.footprint);
+  add_cells(from.footprint, into);
   if (into.in_map == nullptr) into.in_map = from.in_map;
   into.sightings.insert(into.sightings.end(), from.sightings.begin(), from.sightings.end());
 }
@@ -69,7 +74,8 @@ void join_grown(std::vector<Group>& groups) {
   constexpr double min_share = 0.5;
   for (std::size_t i = 0; i < groups.size(); ++i) {
     for (std::size_t k = i + 1; k < groups.size();) {
-      if (groups[i].kind == groups[k].kind && overlap_share(groups[i].footprint, groups[k].footprint) >= min_share) {
+      if (groups[i].kind == groups[k].kind && groups[i].bounds.overlaps(groups[k].bounds) &&
+          overlap_share(groups[i].footprint, groups[k].footprint) >= min_share) {
         move_into(groups[k], groups[i]);
         groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(k));
         k = i + 1;

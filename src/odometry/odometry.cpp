@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory_resource>
 #include <optional>
 #include <utility>
 
@@ -47,8 +46,7 @@ struct Odometry::State {
   int reference() const { return reference_ ? reference_->pose.frame : -1; }
 
   LinkEstimator estimator;
-  std::pmr::unsynchronized_pool_resource scratch_memory{
-      {.max_blocks_per_chunk = 1, .largest_required_pool_block = 4U << 20}};
+  ScratchMemory scratch_memory;
   Trajectory trajectory;
   std::vector<FrameLink> links;
 

@@ -93,7 +93,7 @@ struct Pipeline::State {
   bool has_frame = false;     ///< whether `result` belongs to one frame, whole
   bool has_maps = false;      ///< whether the maps that a device keeps do
 
-  std::pmr::unsynchronized_pool_resource memory{{.max_blocks_per_chunk = 1, .largest_required_pool_block = 4U << 20}};
+  ScratchMemory memory;
   FrameResult result;
 
   GreyImage aligned_right;  ///< align_on_host

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "allocation_count.hpp"
+#include "core/scratch.hpp"
 #include "roadstereo/lens_spots.hpp"
 #include "roadstereo/matcher.hpp"
 #include "roadstereo/pipeline.hpp"
@@ -24,6 +25,33 @@ TEST(AllocationCount, CountsNewBlocks) {
   const auto block = std::make_unique<std::vector<char>>(1 << 20);
   EXPECT_GE(allocations()->count, before.count + 2);
   EXPECT_GE(allocations()->live_bytes, before.live_bytes + (1 << 20));
+}
+
+TEST(ScratchMemory, KeepsBlocksOfEverySize) {
+  SKIP_WITHOUT_COUNT();
+  ScratchMemory memory;
+  const ScratchScope scope(memory);
+  const auto use = [] {
+    for (std::size_t bytes = 100; bytes < (20U << 20); bytes = 3 * bytes / 2) {
+      const auto one = scratch_vector<char>(bytes), other = scratch_vector<char>(bytes + bytes / 7);
+    }
+  };
+  use();
+  const std::size_t before = allocations()->count;
+  use();
+  EXPECT_EQ(allocations()->count - before, 0U);
+}
+
+TEST(ScratchMemory, GoesBackAtTheEnd) {
+  SKIP_WITHOUT_COUNT();
+  const auto before = allocations()->live_bytes;
+  {
+    ScratchMemory memory;
+    const ScratchScope scope(memory);
+    scratch_vector<char>(6U << 20);
+    EXPECT_GE(allocations()->live_bytes, before + (6U << 20));
+  }
+  EXPECT_EQ(allocations()->live_bytes, before);
 }
 
 /// TBB keeps its threads. Without it they are started for every loop, which allocates.
