@@ -24,7 +24,7 @@ import figure_tables
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FIGURES = ROOT / "docs/accuracy.json"
-DOCUMENTS = ("README.md", "docs/accuracy.md", "docs/performance.md")
+DOCUMENTS = ("README.md", "docs/accuracy.md", "docs/damage_accuracy.md", "docs/performance.md")
 PRESETS = ("default", "fast", "paper")
 SLACK = 1.25
 

@@ -152,8 +152,8 @@ void set_shape(const FrameGeometry& geometry, const MetricSums& sums, const Dama
 
 /// Set the standard errors. They combine the errors of the disparity, of the undamaged surface, of the smoothing by the
 /// support window of matching, and of the outline. The constants of the last two were measured on synthetic roads
-/// (docs/accuracy.md): a hollow of the size of the window loses part of its depth, and the outline is accurate to a
-/// fifth of the window's radius.
+/// (docs/damage_accuracy.md): a hollow of the size of the window loses part of its depth, and the outline is accurate
+/// to a fifth of the window's radius.
 void set_standard_errors(const MetricSums& sums, const SurfaceOffset& offset, double noise_px, double sigma_px,
                          double deepest_m_per_px, const Damage& damage, DamageMetrics& metrics) {
   constexpr double mean_factor = 0.3;     // error of the mean depth, relative to that of one pixel

@@ -6,7 +6,7 @@
 namespace roadstereo {
 
 /// Standard errors from the smoothing by the support window of matching: a hollow of the size of the window loses part
-/// of its depth. The shares were measured on synthetic roads (docs/accuracy.md). It is the same in every frame.
+/// of its depth. The shares were measured on synthetic roads (docs/damage_accuracy.md). It is the same in every frame.
 class SmoothingError {
  public:
   /// As far as matching's block and window reach over a rim, some 10 pixels in `default` (docs/method.md).
