@@ -34,43 +34,47 @@ def fit_plane(disparity, road):
     return plane
 
 
+def share_of_depth(away, wall):
+    """Depth at `away` radii from the middle, 0 to 1; the wall reaches over `wall` of the radius."""
+    share = np.clip((1 - away) / wall, 0, 1)
+    return share * share * (3 - 2 * share)
+
+
 class Street:
-    """The plane of a road, in pixels and in metres."""
+    """A road, whose disparity is offset + across · u + down · v, seen in a picture."""
 
-    def __init__(self, disparity, road):
-        height, width = disparity.shape
+    def __init__(self, shape, plane, focal_px, cx_px=CX_PX, cy_px=CY_PX, baseline_m=BASELINE_M):
+        height, width = shape
         self.u, self.v = np.meshgrid(np.arange(width, dtype=float), np.arange(height, dtype=float))
-        focal = FOCAL_PX[width]
-        offset, across, down = fit_plane(disparity, road)
+        offset, across, down = plane
         self.disparity = np.maximum(offset + across * self.u + down * self.v, 1e-3)
-        distance = focal * BASELINE_M / self.disparity
-        points = np.stack([(self.u - CX_PX) / focal * distance, (self.v - CY_PX) / focal * distance, distance], -1)
-        normal = np.array([across, down, (offset + across * CX_PX + down * CY_PX) / focal])
-        self.height = BASELINE_M / np.linalg.norm(normal)
-        normal /= np.linalg.norm(normal)
-        forward = np.array([0, 0, 1]) - normal[2] * normal
-        forward /= np.linalg.norm(forward)
-        self.x, self.y = points @ np.cross(normal, forward), points @ forward
-        self.road = np.asarray(Image.fromarray(road).filter(ImageFilter.MaxFilter(9))) > 0  # a lidar leaves gaps
+        distance = focal_px * baseline_m / self.disparity
+        self.points = np.stack([(self.u - cx_px) / focal_px * distance, (self.v - cy_px) / focal_px * distance, distance], -1)
+        normal = np.array([across, down, (offset + across * cx_px + down * cy_px) / focal_px])
+        self.height = baseline_m / np.linalg.norm(normal)
+        self.normal = normal / np.linalg.norm(normal)
+        forward = np.array([0, 0, 1]) - self.normal[2] * self.normal
+        self.forward = forward / np.linalg.norm(forward)
+        self.right = np.cross(self.normal, self.forward)
 
-    def put(self, generator):
-        """Depth in metres and label of up to two potholes, and what is known of them."""
-        depth, label, known = np.zeros_like(self.x), np.zeros(self.x.shape, bool), []
-        places = np.argwhere(self.road & (self.u > self.disparity + 10))
+    def put(self, road, generator):
+        """Depth in metres and label of up to two potholes, and what is known of them. `road` is a mask."""
+        x, y = self.points @ self.right, self.points @ self.forward
+        depth, label, known = np.zeros_like(x), np.zeros(x.shape, bool), []
+        places = np.argwhere(road & (self.u > self.disparity + 10))
         for _ in range(400):
             if len(known) == 2 or not len(places):
                 break
             v, u = places[generator.integers(len(places))]
             radius, aspect = generator.uniform(0.2, 0.6), generator.uniform(0.6, 1)
-            away = np.hypot(self.x - self.x[v, u], (self.y - self.y[v, u]) / aspect) / radius
+            away = np.hypot(x - x[v, u], (y - y[v, u]) / aspect) / radius
             inside, around = away < 1, away < 1.6
             seen = self.u[around].min() > 2 and self.v[around].max() < self.v.max() - 2
-            if inside.sum() < MIN_PIXELS or label[around].any() or not seen or self.road[around].mean() < 0.9:
+            if inside.sum() < MIN_PIXELS or label[around].any() or not seen or road[around].mean() < 0.9:
                 continue
             largest = 10 ** generator.uniform(np.log10(0.012), np.log10(0.1))
             wall = generator.choice(WALLS)
-            share = np.clip((1 - away) / wall, 0, 1)
-            share *= share * (3 - 2 * share)
+            share = share_of_depth(away, wall)
             depth += largest * share
             label |= share > 0.5
             known.append([u, v, round(2 * radius, 3), round(largest, 4), wall, int(inside.sum())])
@@ -124,12 +128,14 @@ def main():
         if width not in FOCAL_PX:
             sys.exit(f"{source / 'image_2' / name}.png is {width} pixels wide; it must be one of {list(FOCAL_PX)}, as in KITTI")
         disparity = np.asarray(Image.open(source / "disp_noc_0" / f"{name}.png")) / 256.0
-        street = Street(disparity, np.asarray(Image.open(source / "road" / f"{name}.png")))
+        mask = Image.open(source / "road" / f"{name}.png")
+        street = Street(disparity.shape, fit_plane(disparity, np.asarray(mask)), FOCAL_PX[width])
+        road = np.asarray(mask.filter(ImageFilter.MaxFilter(9))) > 0  # a lidar leaves gaps
         rig = f"p{1 + list(FOCAL_PX).index(width)}"
         (output / f"calibration_{rig}.yaml").write_text(
             f"focal_px: {FOCAL_PX[width]}\ncx_px: {CX_PX}\ncy_px: {CY_PX}\nbaseline_m: {BASELINE_M}\n", encoding="utf-8")
         for k in range(count):
-            depth, label, known = street.put(generator)
+            depth, label, known = street.put(road, generator)
             if not known:
                 continue
             own = f"{rig}_{name}_{k}"

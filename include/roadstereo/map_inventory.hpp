@@ -39,7 +39,8 @@ struct RoadDamageRecord {
 /// (all, where none is) are averaged with inverse variances, scaled to the median value, as weights. Only the part of
 /// their errors that differs from frame to frame shrinks, by the number of independent views, n / `view_factor`. A
 /// damage that is cut in all sightings has the values of `best`. The joint confidence of n frames, including frames
-/// without a sighting, is that of one frame √(n / `view_factor`) times as significant. Returns the damages with at
+/// without a sighting, is that of one frame √(n / `view_factor`) times as significant; frames that see the place from
+/// afar weigh less, by pixels and noise. Returns the damages with at
 /// least `min_confidence` whose depth is resolved: it exceeds three standard errors, or
 /// DamageEvidence::is_depth_resolved holds for a sighting or for the finding in the map. Deepest first. Throws Error
 /// when an option is out of range or a damage has no metric values.

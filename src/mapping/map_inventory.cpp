@@ -137,34 +137,58 @@ Measurement fuse(const std::vector<Figure>& figures, double view_factor) {
   return {sum / weight, std::sqrt(common / weight + std::min(n, view_factor) / weight)};
 }
 
-/// Confidence of agreeing frames: the mean of the log-odds, and what the root of the number of independent views adds
-/// to the log of the significance. A frame that measures the place without a finding counts as the least confident one,
-/// and none as less.
-double joint_confidence(const Group& group, int views, double view_factor) {
-  constexpr double least_confidence = 0.05, per_log_significance = 2.15;
+/// What a frame tells of a place, whatever is there: pixels on a square metre of it over the square of their noise.
+double information_of(const Damage& damage) {
+  const DamageMetrics& m = *damage.metrics;
+  const double noise_m = m.resolvable_depth_m;  // to scale
+  const double information = static_cast<double>(damage.pixels) / (m.area_m2.value * noise_m * noise_m);
+  return std::isfinite(information) && information > 0 ? information : 1;
+}
+
+/// First sighting of every frame: a whole one if there is one, then the surest.
+std::vector<const Damage*> one_per_frame(const std::vector<const DamageSighting*>& sightings) {
   std::set<std::pair<int, int>> frames;
-  double sum = 0;
-  for (const DamageSighting* sighting : group.sightings) {
-    if (!frames.insert({sighting->pass, sighting->frame}).second) continue;
-    sum += log_odds(std::max(least_confidence, sighting->found.damage.confidence));
+  std::vector<const Damage*> first;
+  for (const DamageSighting* sighting : sightings) {
+    if (frames.insert({sighting->pass, sighting->frame}).second) first.push_back(&sighting->found.damage);
   }
-  const auto seen = static_cast<double>(frames.size());
-  const double all = std::max(seen, static_cast<double>(views));
-  const double mean = (sum + (all - seen) * log_odds(least_confidence)) / all;
-  const double independent = std::max(1.0, seen / view_factor);
+  return first;
+}
+
+/// Confidence of agreeing frames: the mean of the log-odds, weighted by what each frame tells of the place, and what
+/// the root of the number of independent views adds to the log of the significance. A frame that measures the place
+/// without a finding tells as much as the sighting that tells least; it counts as the least confident one, and none as
+/// less.
+double joint_confidence(const std::vector<const Damage*>& seen, int views, double view_factor) {
+  constexpr double least_confidence = 0.05, per_log_significance = 2.15;
+  double sum = 0, all = 0, most = 0, least = HUGE_VAL;
+  for (const Damage* damage : seen) {
+    const double weight = information_of(*damage);
+    sum += weight * log_odds(std::max(least_confidence, damage->confidence));
+    all += weight;
+    most = std::max(most, weight);
+    least = std::min(least, weight);
+  }
+  const double independent = std::max(1.0, all / most / view_factor);
+  const double silent = least * std::max(0.0, static_cast<double>(views) - static_cast<double>(seen.size()));
+  const double mean = (sum + silent * log_odds(least_confidence)) / (all + silent);
   return probability_of(mean + per_log_significance * 0.5 * std::log(independent));
 }
 
 /// Confidence of a finding in the map, which `views` frames measure. Each independent frame of those without a sighting
 /// counts against it, by the confidence that the damage would have in one frame, where noise is larger by the root of
-/// the number of independent frames: what all of them must have seen, and none has, is an error of the map.
-double confidence_in_map(const Damage& in_map, int views, int sightings, double view_factor) {
-  if (views <= sightings) return in_map.confidence;
+/// the number of independent frames: what all of them must have seen, and none has, is an error of the map. A sighting
+/// that is less confident than that counts in proportion.
+double confidence_in_map(const Damage& in_map, int views, const std::vector<const Damage*>& seen, double view_factor) {
   const double independent = std::max(1.0, views / view_factor);
   DamageEvidence in_frame = in_map.evidence;
   in_frame.significance /= std::sqrt(independent);
-  const double silent = independent * (views - sightings) / views;
-  return probability_of(log_odds(in_map.confidence) + silent * std::log1p(-in_frame.confidence()));
+  const double expected = in_frame.confidence();
+  double confirmed = 0;
+  for (const Damage* damage : seen) confirmed += damage->confidence < expected ? damage->confidence / expected : 1;
+  if (views <= confirmed) return in_map.confidence;
+  const double silent = independent * (views - confirmed) / views;
+  return probability_of(log_odds(in_map.confidence) + silent * std::log1p(-expected));
 }
 
 /// Median number of frames that measure the cells of a footprint.
@@ -214,11 +238,9 @@ RoadDamageRecord record_of(const Group& group, const RoadMap& map, const DamageO
   record.best.footprint = group.footprint;
   record.found_in_map = group.in_map != nullptr;
   record.views = views_of(group.footprint, map);
-  std::set<std::pair<int, int>> frames;
   std::set<int> passes;
   std::vector<Figure> depth, mean_depth, area, volume;
   for (const DamageSighting* sighting : group.sightings) {
-    frames.insert({sighting->pass, sighting->frame});
     passes.insert(sighting->pass);
     const Damage& damage = sighting->found.damage;
     if (damage.cut_by_border || (any_confident && damage.confidence < options.min_confidence)) continue;
@@ -229,7 +251,8 @@ RoadDamageRecord record_of(const Group& group, const RoadMap& map, const DamageO
     volume.push_back({m.volume_m3, smoothing.volume(m.volume_m3.value)});
     area.push_back({m.area_m2, m.area_m2.std_error / std::numbers::sqrt2});
   }
-  record.sightings = static_cast<int>(frames.size());
+  const std::vector<const Damage*> seen = one_per_frame(group.sightings);
+  record.sightings = static_cast<int>(seen.size());
   record.passes = static_cast<int>(passes.size());
   const DamageMetrics& best = *record.best.damage.metrics;
   const bool whole = !depth.empty();
@@ -237,10 +260,10 @@ RoadDamageRecord record_of(const Group& group, const RoadMap& map, const DamageO
   record.mean_depth_m = whole ? fuse(mean_depth, view_factor) : best.mean_depth_m;
   record.area_m2 = whole ? fuse(area, view_factor) : best.area_m2;
   record.volume_m3 = whole ? fuse(volume, view_factor) : best.volume_m3;
-  record.confidence = group.sightings.empty() ? 0 : joint_confidence(group, record.views, view_factor);
+  record.confidence = seen.empty() ? 0 : joint_confidence(seen, record.views, view_factor);
   if (group.in_map != nullptr) {
-    record.confidence = std::max(record.confidence,
-                                 confidence_in_map(group.in_map->damage, record.views, record.sightings, view_factor));
+    record.confidence =
+        std::max(record.confidence, confidence_in_map(group.in_map->damage, record.views, seen, view_factor));
   }
   DamageMetrics fused = best;
   fused.max_depth_m = record.max_depth_m;

@@ -110,11 +110,35 @@ TEST_F(JoinDamage, SilentFramesCountAgainstDamageOfTheMap) {
   ASSERT_EQ(kept.size(), 1U);
   EXPECT_EQ(kept[0].views, frames);
   EXPECT_NEAR(kept[0].confidence, 0.9, 0.01);
-  std::vector<DamageSighting> seen;
-  for (int frame = 0; frame < frames; ++frame) seen.push_back({0, frame, finding(-5, -5, 10, 0.03, 0.008, 0.4)});
+  std::vector<DamageSighting> seen, doubtful;
+  for (int frame = 0; frame < frames; ++frame) {
+    seen.push_back({0, frame, finding(-5, -5, 10, 0.03, 0.008, 0.9)});
+    doubtful.push_back({0, frame, finding(-5, -5, 10, 0.03, 0.008, 0.01)});
+  }
   const std::vector<RoadDamageRecord> records = join_damage(seen, std::vector{plain}, map_, {});
   ASSERT_EQ(records.size(), 1U);
   EXPECT_GE(records[0].confidence, 0.9);
+  EXPECT_TRUE(join_damage(doubtful, std::vector{plain}, map_, {}).empty());
+}
+
+/// Finding whose place has so many pixels on a square metre, and so much noise.
+MapDamage seen_from(MapDamage found, std::size_t pixels_per_m2, double noise_m) {
+  found.damage.pixels = pixels_per_m2 / 10;  // it has 0.1 m²
+  found.damage.metrics->resolvable_depth_m = noise_m;
+  return found;
+}
+
+// A camera that drives up to a pothole doubts it from afar. Frames at a distance r tell r⁻³ · r⁻² as much: those at 8
+// and 16 m of one at 4 m 1/32 and 1/1024.
+TEST_F(JoinDamage, NearFramesDecide) {
+  const std::vector<DamageSighting> sightings{{0, 0, seen_from(finding(0, 0, 10, 0.04, 0.03, 0.1), 1'000, 0.16)},
+                                              {0, 1, seen_from(finding(0, 0, 10, 0.04, 0.02, 0.2), 8'000, 0.08)},
+                                              {0, 2, seen_from(finding(0, 0, 10, 0.04, 0.01, 0.95), 64'000, 0.04)}};
+  const std::vector<RoadDamageRecord> records = join_damage(sightings, {}, map_, {});
+  ASSERT_EQ(records.size(), 1U);
+  const auto log_odds = [](double p) { return std::log(p / (1 - p)); };
+  const double mean = (log_odds(0.1) / 1024 + log_odds(0.2) / 32 + log_odds(0.95)) / (1.0 / 1024 + 1.0 / 32 + 1);
+  EXPECT_NEAR(records[0].confidence, 1 / (1 + std::exp(-mean)), 1e-6);
 }
 
 TEST_F(JoinDamage, NeedsMetricValues) {
