@@ -3,14 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "roadstereo/damage.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/synth.hpp"
+#include "tests/damage/damage_scene.hpp"
 
 namespace roadstereo {
 
@@ -63,6 +66,40 @@ inline void expect_error(const std::function<void()>& call, const std::string& p
     ADD_FAILURE() << "no error about \"" << part << "\"";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+}
+
+/// Within `share` of the truth, and within `errors` standard errors where those are more than the figure's rounding.
+inline void expect_figure(const char* name, const Measurement& measured, double truth, double share) {
+  constexpr double errors = 3;
+  EXPECT_NEAR(measured.value, truth, share * truth) << name;
+  EXPECT_GT(measured.std_error, 0) << name;
+  EXPECT_LT(measured.std_error, 0.5 * truth) << name;
+  EXPECT_NEAR(measured.value, truth, errors * measured.std_error) << name;
+}
+
+inline void expect_truth(const DamageMap& map, const synth::SyntheticPair& pair) {
+  ASSERT_TRUE(map.metric) << map.non_metric_reason;
+  ASSERT_EQ(map.damages.size(), pair.damages.size());
+  for (const synth::DamageTruth& known : pair.damages) {
+    SCOPED_TRACE(known.kind);
+    const Damage* found = find(map, pair, known.id);
+    ASSERT_NE(found, nullptr);
+    EXPECT_EQ(found->kind, known.kind == "bump" ? DamageKind::protrusion : DamageKind::depression);
+    EXPECT_FALSE(found->cut_by_border);
+    ASSERT_TRUE(found->metrics);
+    const DamageMetrics& metrics = *found->metrics;
+    expect_figure("depth", metrics.max_depth_m, known.depth_m, 0.05);
+    expect_figure("area", metrics.area_m2, known.area_m2, 0.08);
+    expect_figure("volume", metrics.volume_m3, known.volume_m3, 0.10);
+    expect_figure("mean depth", metrics.mean_depth_m, known.mean_depth_m, 0.10);
+    EXPECT_NEAR(metrics.diameter_m, 2 * std::sqrt(known.area_m2 / std::numbers::pi), 0.04 * metrics.diameter_m);
+    EXPECT_NEAR(metrics.road_centroid_m[0], known.x_m, 0.01 * metrics.distance_m);
+    EXPECT_NEAR(metrics.road_centroid_m[1], known.y_m, 0.01 * metrics.distance_m);
+    const auto centroid = label_centroid(pair, known.id);
+    EXPECT_NEAR(found->centroid_px[0], centroid[0], 1);
+    EXPECT_NEAR(found->centroid_px[1], centroid[1], 1);
+    EXPECT_GE(f_score(map.ids, found->id, pair.labels, known.id), 0.9);
   }
 }
 

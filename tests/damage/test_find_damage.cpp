@@ -3,11 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <string>
 
@@ -17,40 +15,6 @@
 
 namespace roadstereo {
 namespace {
-
-/// Within `share` of the truth, and within `errors` standard errors where those are more than the figure's rounding.
-void expect_figure(const char* name, const Measurement& measured, double truth, double share) {
-  constexpr double errors = 3;
-  EXPECT_NEAR(measured.value, truth, share * truth) << name;
-  EXPECT_GT(measured.std_error, 0) << name;
-  EXPECT_LT(measured.std_error, 0.5 * truth) << name;
-  EXPECT_NEAR(measured.value, truth, errors * measured.std_error) << name;
-}
-
-void expect_truth(const DamageMap& map, const synth::SyntheticPair& pair) {
-  ASSERT_TRUE(map.metric) << map.non_metric_reason;
-  ASSERT_EQ(map.damages.size(), pair.damages.size());
-  for (const synth::DamageTruth& known : pair.damages) {
-    SCOPED_TRACE(known.kind);
-    const Damage* found = find(map, pair, known.id);
-    ASSERT_NE(found, nullptr);
-    EXPECT_EQ(found->kind, known.kind == "bump" ? DamageKind::protrusion : DamageKind::depression);
-    EXPECT_FALSE(found->cut_by_border);
-    ASSERT_TRUE(found->metrics);
-    const DamageMetrics& metrics = *found->metrics;
-    expect_figure("depth", metrics.max_depth_m, known.depth_m, 0.05);
-    expect_figure("area", metrics.area_m2, known.area_m2, 0.08);
-    expect_figure("volume", metrics.volume_m3, known.volume_m3, 0.10);
-    expect_figure("mean depth", metrics.mean_depth_m, known.mean_depth_m, 0.10);
-    EXPECT_NEAR(metrics.diameter_m, 2 * std::sqrt(known.area_m2 / std::numbers::pi), 0.04 * metrics.diameter_m);
-    EXPECT_NEAR(metrics.road_centroid_m[0], known.x_m, 0.01 * metrics.distance_m);
-    EXPECT_NEAR(metrics.road_centroid_m[1], known.y_m, 0.01 * metrics.distance_m);
-    const auto centroid = label_centroid(pair, known.id);
-    EXPECT_NEAR(found->centroid_px[0], centroid[0], 1);
-    EXPECT_NEAR(found->centroid_px[1], centroid[1], 1);
-    EXPECT_GE(f_score(map.ids, found->id, pair.labels, known.id), 0.9);
-  }
-}
 
 TEST(FindDamage, MeasuresPotholeAndBump) {
   const DamageMap map = find_damage(damaged().metric());
@@ -169,116 +133,6 @@ TEST(FindDamage, OffsetOfTransformedMapHasNoEffect) {
   for (std::size_t k = 0; k < map.damages.size(); ++k) {
     const double depth = map.damages[k].metrics->max_depth_m.value;
     EXPECT_NEAR(other.damages[k].metrics->max_depth_m.value, depth, 0.005 * depth);
-  }
-}
-
-/// Pixels of a damage near its wall, in a disk.
-void forget_disk(ExactMaps& maps, double u0, double v0, double radius) {
-  for (int v = 0; v < maps.transformed.height(); ++v) {
-    for (int u = 0; u < maps.transformed.width(); ++u) {
-      if (std::hypot(u - u0, v - v0) <= radius) maps.forget(u, v);
-    }
-  }
-}
-
-TEST(FindDamage, GapInWallBelongsToPothole) {
-  ExactMaps maps = damaged();
-  const Damage* whole = nullptr;
-  const DamageMap before = find_damage(maps.metric());
-  whole = find(before, maps.pair, 1);
-  ASSERT_NE(whole, nullptr);
-  const double u = whole->box_px[0] + 12, v = whole->centroid_px[1];  // within the left wall
-  forget_disk(maps, u, v, 7);
-  const DamageMap map = find_damage(maps.metric());
-  expect_truth(map, maps.pair);
-  EXPECT_EQ(map.ids(static_cast<int>(u), static_cast<int>(v)), find(map, maps.pair, 1)->id);
-  EXPECT_TRUE(std::isfinite(map.depth(static_cast<int>(u), static_cast<int>(v))));
-  EXPECT_LT(find(map, maps.pair, 1)->measured_share, whole->measured_share);
-}
-
-/// Where the rim is missing, too, the hole is not enclosed by what was seen of the pothole.
-TEST(FindDamage, GapOverRimBelongsToPothole) {
-  ExactMaps maps = damaged();
-  const DamageMap before = find_damage(maps.metric());
-  const Damage* whole = find(before, maps.pair, 1);
-  ASSERT_NE(whole, nullptr);
-  const double u = whole->box_px[0] + 9, v = whole->centroid_px[1];
-  forget_disk(maps, u, v, 13);
-  const DamageMap map = find_damage(maps.metric());
-  double hidden = 0, found = 0;
-  for (int row = 0; row < map.ids.height(); ++row) {
-    for (int column = 0; column < map.ids.width(); ++column) {
-      if (std::hypot(column - u, row - v) > 13 || maps.pair.labels(column, row) != 1) continue;
-      ++hidden;
-      found += map.ids(column, row) != 0 ? 1 : 0;
-    }
-  }
-  EXPECT_GE(found, 0.6 * hidden);
-  expect_truth(map, maps.pair);
-}
-
-TEST(FindDamage, GapsInRoadAreNoDamage) {
-  ExactMaps maps = damaged();
-  forget_disk(maps, 320, 40, 20);
-  forget_disk(maps, 560, 330, 12);
-  for (int v = 0; v < maps.transformed.height(); ++v) {
-    for (int u = 0; u < 30; ++u) maps.forget(u, v);
-  }
-  for (const DamageInput& input : {maps.metric(), maps.pixels()}) {
-    const DamageMap map = find_damage(input);
-    EXPECT_EQ(map.ids(320, 40), 0);
-    EXPECT_EQ(map.ids(560, 330), 0);
-    EXPECT_TRUE(std::isnan(map.depth(320, 40)));
-    for (int v = 0; v < map.ids.height(); ++v) EXPECT_EQ(map.ids(10, v), 0);
-    EXPECT_EQ(map.damages.size(), 2U);
-  }
-}
-
-/// What nobody saw is not the pothole's because the pothole ends there: a gap from the border of the picture into it,
-/// and one from it far into the road.
-TEST(FindDamage, GapBeyondPotholeIsNoDamage) {
-  const auto [middle_u, middle_v] = label_centroid(damaged().pair, 1);
-  for (const bool to_border : {true, false}) {
-    ExactMaps maps = damaged();
-    const int first = to_border ? 0 : static_cast<int>(middle_u) + 30;
-    const int last = to_border ? static_cast<int>(middle_u) - 30 : static_cast<int>(middle_u) + 190;
-    const int row = static_cast<int>(middle_v);
-    for (int v = row - 25; v <= row + 25; ++v) {
-      for (int u = first; u <= last; ++u) maps.forget(u, v);
-    }
-    const DamageMap map = find_damage(maps.metric());
-    ASSERT_NE(find(map, maps.pair, 1), nullptr);
-    int invented = 0;
-    for (int v = row - 25; v <= row + 25; ++v) {
-      for (int u = first; u <= last; ++u) invented += map.ids(u, v) != 0 && maps.pair.labels(u, v) == 0 ? 1 : 0;
-    }
-    EXPECT_EQ(invented, 0) << (to_border ? "at the border" : "in the road");
-  }
-}
-
-TEST(FindDamage, InfinityIsInvalidLikeNan) {
-  ExactMaps missing = damaged();
-  forget_disk(missing, 320, 40, 20);
-  const auto [u, v] = label_centroid(missing.pair, 1);
-  forget_disk(missing, u, v, 4);
-  ExactMaps endless = missing;
-  for (int row = 0; row < endless.transformed.height(); ++row) {
-    for (int column = 0; column < endless.transformed.width(); ++column) {
-      float& value = endless.transformed(column, row);
-      constexpr float endless_value = std::numeric_limits<float>::infinity();
-      constexpr float no_data = std::numeric_limits<float>::max();  // of many programs
-      if (std::isnan(value)) value = (column % 2 == 0 ? endless_value : no_data) * (row % 2 == 0 ? 1.0F : -1.0F);
-    }
-  }
-  for (const bool metric : {true, false}) {
-    const DamageMap one = find_damage(metric ? missing.metric() : missing.pixels());
-    const DamageMap other = find_damage(metric ? endless.metric() : endless.pixels());
-    EXPECT_EQ(one.ids, other.ids);
-    ASSERT_EQ(one.damages.size(), other.damages.size());
-    for (std::size_t k = 0; k < one.damages.size(); ++k) {
-      EXPECT_EQ(one.damages[k].mean_depth_px, other.damages[k].mean_depth_px);
-      EXPECT_EQ(one.damages[k].measured_share, other.damages[k].measured_share);
-    }
   }
 }
 
@@ -429,105 +283,6 @@ TEST(FindDamage, MaskEndsViewAsBorderDoes) {
   EXPECT_GT(beside_mask.confidence, 0.9);
   EXPECT_LT(beside_gap.confidence, beside_mask.confidence);
   EXPECT_NEAR(beside_mask.metrics->max_depth_m.value, whole.damages[0].metrics->max_depth_m.value, 0.01);
-}
-
-TEST(FindDamage, IntactRoadHasNone) {
-  synth::Scene scene = intact_scene();
-  for (const double camber : {0.0, 0.02, 0.04}) {
-    scene.road.camber = camber;
-    const ExactMaps maps(scene);
-    for (const DamageInput& input : {maps.metric(), maps.pixels()}) {
-      const DamageMap map = find_damage(input);
-      EXPECT_TRUE(map.damages.empty()) << "camber " << camber;
-      EXPECT_EQ(map.ids, Image<std::uint16_t>(640, 360, 0));
-      double on_road = 0;
-      for (int v = 0; v < 360; ++v) {
-        for (int u = 0; u < 640; ++u) on_road += map.road(u, v) != 0 ? 1 : 0;
-      }
-      EXPECT_GT(on_road, 0.8 * 640 * 360) << "camber " << camber;
-    }
-  }
-}
-
-TEST(FindDamage, KerbIsNoDamage) {
-  synth::Scene scene = intact_scene();
-  for (const double height_m : {0.05, 0.12, 0.18}) {
-    scene.road.kerbs = {{0.45, height_m, 0.02}};
-    const ExactMaps maps(scene);
-    EXPECT_TRUE(find_damage(maps.metric()).damages.empty()) << height_m;
-    EXPECT_TRUE(find_damage(maps.pixels()).damages.empty()) << height_m;
-  }
-}
-
-/// Lifts a rectangle of the picture: n·p = h − z, so that d grows by the factor h / (h − z).
-ExactMaps with_block(double lift_m) {
-  ExactMaps maps(intact_scene());
-  const double height_m = ground_plane(maps.pair.plane, maps.pair.calibration).height_m;
-  for (int v = 100; v < 260; ++v) {
-    for (int u = 200; u < 420; ++u) {
-      const double change = maps.pair.plane.disparity(u, v) * (height_m / (height_m - lift_m) - 1);
-      maps.disparity(u, v) += static_cast<float>(change);
-      maps.transformed(u, v) += static_cast<float>(change);
-    }
-  }
-  return maps;
-}
-
-TEST(FindDamage, HighBlockIsNoDamageLowBlockIsBump) {
-  for (const double lift_m : {0.2, 0.6})
-    EXPECT_TRUE(find_damage(with_block(lift_m).metric()).damages.empty()) << lift_m;
-  const DamageMap low = find_damage(with_block(0.05).metric());  // debris that a wheel climbs
-  ASSERT_EQ(low.damages.size(), 1U);
-  EXPECT_EQ(low.damages[0].kind, DamageKind::protrusion);
-  EXPECT_NEAR(low.damages[0].metrics->max_depth_m.value, 0.05, 0.0025);
-  EXPECT_NEAR(static_cast<double>(low.damages[0].pixels), 220 * 160, 0.1 * 220 * 160);
-}
-
-/// A stone of 25 mm at the edge of a heave of 6 mm: no debris as large as the heave.
-TEST(FindDamage, StoneOnReliefIsNoLargerThanItself) {
-  ExactMaps maps(intact_scene(), 0.1);
-  const double height_m = ground_plane(maps.pair.plane, maps.pair.calibration).height_m;
-  const auto lift = [&](int u, int v, double lift_m) {
-    const double change = maps.pair.plane.disparity(u, v) * (height_m / (height_m - lift_m) - 1);
-    maps.disparity(u, v) += static_cast<float>(change);
-    maps.transformed(u, v) += static_cast<float>(change);
-  };
-  for (int v = 100; v < 260; ++v) {
-    for (int u = 180; u < 460; ++u) {
-      const bool is_stone = u >= 400 && u < 436 && v >= 150 && v < 172;
-      const double from_middle = std::hypot((u - 310) / 120.0, (v - 180) / 60.0);
-      lift(u, v, is_stone ? 0.025 : from_middle < 1 ? 0.006 : 0);
-    }
-  }
-  for (const Damage& damage : find_damage(maps.metric()).damages) EXPECT_LT(damage.pixels, 4U * 36 * 22);
-}
-
-/// Wrong matches, as snow or dirt make them, do not cost the damage that they lie in.
-TEST(FindDamage, ImpossibleDepthInsideDamageIsOutlier) {
-  ExactMaps maps = damaged();
-  const synth::DamageTruth& pothole = maps.pair.damages[0];
-  const auto [centre_u, centre_v] = label_centroid(maps.pair, pothole.id);
-  for (int v = static_cast<int>(centre_v) - 6; v < static_cast<int>(centre_v) + 6; ++v) {
-    for (int u = static_cast<int>(centre_u) - 6; u < static_cast<int>(centre_u) + 6; ++u) {
-      const double surface = maps.pair.plane.disparity(u, v);
-      maps.disparity(u, v) -= static_cast<float>(0.4 * surface);  // far below any pothole
-      maps.transformed(u, v) -= static_cast<float>(0.4 * surface);
-    }
-  }
-  const DamageMap map = find_damage(maps.metric());
-  ASSERT_EQ(map.damages.size(), 2U);
-  const Damage* found = find(map, maps.pair, pothole.id);
-  ASSERT_NE(found, nullptr);
-  EXPECT_NEAR(found->metrics->max_depth_m.value, pothole.depth_m, 0.05 * pothole.depth_m);
-  EXPECT_NEAR(found->metrics->volume_m3.value, pothole.volume_m3, 0.1 * pothole.volume_m3);
-}
-
-TEST(FindDamage, OmitsBumpsUnlessRequested) {
-  DamageOptions options;
-  options.protrusions = false;
-  const DamageMap map = find_damage(damaged().metric(), options);
-  ASSERT_EQ(map.damages.size(), 1U);
-  EXPECT_EQ(map.damages[0].kind, DamageKind::depression);
 }
 
 // A road that has caved in is the worst of its damage.
