@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,11 +34,12 @@ struct PipelineOptions {
   std::string engine = "auto";  ///< a name from engines(), or "auto"
   int threads = 0;              ///< worker threads; 0 takes all cores
   double white_level = 0;       ///< sample value of white, 0 … 65535; 0 takes 255 or 65535 by the sample type
-  bool check_rows = true;       ///< measure the vertical alignment of the rows: whenever the road is searched without
-                                ///< tracking, and on a tracked road every 100 frames, or every 10 while the alignment
-                                ///< is unknown
-  bool correct_rows = true;     ///< undo the misalignment, up to 8 px, that `check_rows` has measured
-  bool narrow_search = true;    ///< search each tile only near the disparities that the coarse search finds there
+  bool deblock = true;        ///< smooth the steps between the blocks of 8×8 pixels that JPEG leaves, where they show
+  bool check_rows = true;     ///< measure the vertical alignment of the rows: whenever the road is searched without
+                              ///< tracking, and on a tracked road every 100 frames, or every 10 while the alignment
+                              ///< is unknown
+  bool correct_rows = true;   ///< undo the misalignment, up to 8 px, that `check_rows` has measured
+  bool narrow_search = true;  ///< search each tile only near the disparities that the coarse search finds there
   RoadModelOptions road_model;
   PerspectiveOptions perspective;
   CoarseSearchOptions coarse_search;
@@ -74,7 +77,7 @@ struct StageTimes {
 
 /// Result for one pair. All maps have the size of the images.
 struct FrameResult {
-  GreyImage grey;            ///< the left image
+  GreyImage grey;            ///< the left image; deblocked (PipelineOptions::deblock), as is the right one
   GreyImage right;           ///< the right image; misaligned by `shift.misalignment`
   Image<float> disparity;    ///< ℓ: left-image disparities, pixels, NaN invalid
   Image<float> sigma;        ///< standard error of `disparity`, pixels, NaN where that is invalid
@@ -89,7 +92,10 @@ struct FrameResult {
   double delta_t = 0;       ///< δt, pixels
   RoadResiduals spread;     ///< σ_d, eq. (37)
   double valid_share = 0;   ///< share of the pixels that have a disparity
-  RowAlignment rows;        ///< `points` is 0 if it was not measured for this frame (PipelineOptions::check_rows)
+  /// Excess of the steps between blocks of 8×8 pixels (JPEG) over those beside them, relative, of the left and the
+  /// right image before `deblock`; NaN if not measured.
+  std::array<double, 2> block_steps{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  RowAlignment rows;  ///< `points` is 0 if it was not measured for this frame (PipelineOptions::check_rows)
   StageTimes ms;
   double mde_per_s = 0;  ///< millions of disparity evaluations per second: W·H·D / total time
   std::vector<std::string> warnings;

@@ -1,10 +1,12 @@
 #include "pipeline/host_stages.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "core/deblocking.hpp"
 #include "core/grey_weights.hpp"
 #include "core/parallel.hpp"
 #include "pipeline/pair_checks.hpp"
@@ -67,6 +69,7 @@ class HostStages final : public FrameStages {
     });
     contents.equal = left_ == right_;
     require_pair(contents);
+    parallel_for(2, threads_, [&](int side, int) { remove_block_steps(side); });
     return {left_, right_};
   }
 
@@ -182,6 +185,7 @@ class HostStages final : public FrameStages {
     std::swap(result.disparity, disparity_);
     std::swap(result.sigma, sigma_);
     std::swap(result.transformed, transformed_);
+    result.block_steps = block_steps_;
   }
 
   void set_device_options(const DeviceOptions&) override { fail_without_device(); }
@@ -189,6 +193,16 @@ class HostStages final : public FrameStages {
   DeviceProfile device_profile() const override { fail_without_device(); }
 
  private:
+  /// Measures the steps between JPEG's blocks in an image, and smooths them.
+  void remove_block_steps(int side) {
+    GreyImage& grey = side == 0 ? left_ : right_;
+    const BlockSteps steps = measure_block_steps(grey);
+    block_steps_[static_cast<std::size_t>(side)] = steps.excess();
+    if (!options_.deblock) return;
+    const int strength = deblocking_strength(steps, BlockStepSamples(grey.width(), grey.height()).count());
+    if (strength > 0) smooth_block_steps(grey, strength);
+  }
+
   [[noreturn]] static void fail_without_device() {
     fail("only a pipeline with the engine cuda keeps its maps on a device");
   }
@@ -228,8 +242,9 @@ class HostStages final : public FrameStages {
   std::vector<int> first_column_;  ///< of the transformed target
   MatchMaps matched_;
   Image<float> restored_;
-  Image<float> refined_, refined_sigma_;          ///< of the matched pixels, where those are not all
-  Image<float> correlation_;                      ///< of the cells of the Lucas–Kanade step
+  Image<float> refined_, refined_sigma_;  ///< of the matched pixels, where those are not all
+  Image<float> correlation_;              ///< of the cells of the Lucas–Kanade step
+  std::array<double, 2> block_steps_{};
   Image<float> disparity_, sigma_, transformed_;  ///< results of the frame; earlier ones after `download`
 };
 

@@ -48,6 +48,7 @@ void visit_options(Options& o, Visitor visit) {
   visit("engine", o.engine, "engine by name, or auto");
   visit("threads", o.threads, "worker threads; 0 takes all cores");
   visit("white_level", o.white_level, "sample value of white; 0: the largest of the sample type");
+  visit("deblock", o.deblock, "smooth the steps between the 8×8 blocks of JPEG, where they show");
   visit("check_rows", o.check_rows, "measure whether the rows of the pair agree");
   visit("correct_rows", o.correct_rows,
         "undo the vertical shift, rotation and row scale of the right image that check_rows measures");

@@ -1,13 +1,13 @@
 #include "pipeline/picture_health.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "core/deblocking.hpp"
 #include "core/order_statistics.hpp"
 
 namespace roadstereo {
@@ -204,25 +204,9 @@ double noise_share(const FrameResult& frame, const DamageMap& damage) {
   return variance > 0 ? 0.5 * noise * noise / variance : PairHealth::unknown;
 }
 
-/// Excess of the steps at multiples of 8 pixels over those beside them, relative: JPEG quantises blocks of 8×8 apart.
-double block_excess(Grey image) {
-  constexpr int block = 8;
-  const int width = image.width();
-  std::array<std::int64_t, block> steps{};
-  std::vector<std::int32_t> across(static_cast<std::size_t>(width));  // fits for up to 2³¹ / grey_max rows
-  std::int32_t* const columns = across.data();
-  for (int v = 1; v < image.height(); ++v) {
-    const std::int16_t *const above = image.row(v - 1), *const row = image.row(v);
-    std::int32_t down = 0;
-    for (int u = 1; u < width; ++u) {
-      columns[u] += std::abs(row[u] - row[u - 1]);
-      down += std::abs(row[u] - above[u]);
-    }
-    steps[static_cast<std::size_t>(v % block)] += down;
-  }
-  for (std::size_t u = 1; u < across.size(); ++u) steps[u % block] += across[u];
-  const double beside = 0.5 * static_cast<double>(steps[1] + steps[block - 1]);
-  return beside > 0 ? static_cast<double>(steps[0]) / beside - 1 : PairHealth::unknown;
+/// FrameResult::block_steps, or of the image as it is.
+double block_steps(double measured, Grey image) {
+  return std::isnan(measured) ? measure_block_steps(image).excess() : measured;
 }
 
 }  // namespace
@@ -232,8 +216,8 @@ void measure_pictures(const FrameResult& frame, const DamageMap& damage, PairHea
   health.blur_left_px = blur_of(frame.grey, damage);
   health.blur_right_px = blur_of(frame.right, damage);
   health.noise_share = noise_share(frame, damage);
-  health.blocks_left = block_excess(frame.grey);
-  health.blocks_right = block_excess(frame.right);
+  health.blocks_left = block_steps(frame.block_steps[0], frame.grey);
+  health.blocks_right = block_steps(frame.block_steps[1], frame.right);
 }
 
 }  // namespace roadstereo

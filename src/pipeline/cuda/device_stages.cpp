@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/cuda/deblocking.hpp"
 #include "core/cuda/device.hpp"
 #include "core/cuda/grey.hpp"
 #include "pipeline/cuda/frame_maps.hpp"
@@ -72,6 +73,7 @@ class DeviceStages final : public FrameStages {
     const FrameUpload::Pair frames = upload_.upload(left, right, options_.white_level, stream());
     resize(left.width, left.height);
     to_grey_.convert(frames.left, frames.right, maps_.grey(), view(right_), stream());
+    deblocking_.run(maps_.grey(), view(right_), options_.deblock, stream());
     mark(StageClock::converted);
     return {maps_.grey(), view(right_)};
   }
@@ -289,6 +291,7 @@ class DeviceStages final : public FrameStages {
   int width_ = 0, height_ = 0;
   FrameUpload upload_;
   PairToGrey to_grey_;
+  PairDeblocking deblocking_;
   FrameMaps maps_;
   DeviceArray<std::int16_t> right_, target_;
   DeviceArray<int> first_column_;
@@ -376,6 +379,7 @@ void DeviceStages::invalidate_transformed() {
 void DeviceStages::download(FrameResult& result) {
   if (!complete_) wait();
   if (clock_) clock_->read(result.ms);
+  result.block_steps = deblocking_.excess();
   if (download_) {
     maps_.take(result);
   } else {
