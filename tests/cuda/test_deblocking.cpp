@@ -1,5 +1,8 @@
 // Steps between the blocks of JPEG on the device: the same bits as on the host.
 
+#include <array>
+#include <utility>
+
 #include "core/cuda/deblocking.hpp"
 #include "tests/cuda/device_copy.hpp"
 #include "tests/cuda/device_test.hpp"
