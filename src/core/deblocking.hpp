@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "roadstereo/grey_scale.hpp"
@@ -36,11 +37,11 @@ struct BlockSteps {
   }
 };
 
-/// Strength of the filter, the mean excess of a step in grey values; 0 for images that are not compressed, whose excess
-/// is −0.04 to 0.03.
+/// Strength of the filter, the mean excess of a step in grey values, of `count` steps; 0 for images that are not
+/// compressed, whose excess is −0.04 to 0.03, and more by chance where the steps are few.
 ROADSTEREO_HD inline int deblocking_strength(const BlockSteps& steps, int count) {
-  constexpr double min_excess = 0.05;
-  if (steps.excess() < min_excess) return 0;
+  constexpr double min_excess = 0.05, min_sigmas = 3;
+  if (count == 0 || steps.excess() < min_excess + min_sigmas / std::sqrt(static_cast<double>(count))) return 0;
   return static_cast<int>((static_cast<double>(steps.between) - 0.5 * static_cast<double>(steps.beside)) / count + 0.5);
 }
 

@@ -44,8 +44,9 @@ TEST(Deblocking, ImageWithoutBlocksStays) {
 }
 
 TEST(Deblocking, StrengthIsMeanExcess) {
-  EXPECT_EQ(deblocking_strength({1500, 2000}, 10), 50);  // 150 between, 100 beside
-  EXPECT_EQ(deblocking_strength({1040, 2000}, 10), 0);   // 4 %
+  EXPECT_EQ(deblocking_strength({150'000, 200'000}, 1'000), 50);  // 150 between, 100 beside
+  EXPECT_EQ(deblocking_strength({104'000, 200'000}, 1'000), 0);   // 4 %
+  EXPECT_EQ(deblocking_strength({1'500, 2'000}, 10), 0);          // three standard errors of 10 steps are 95 %
 }
 
 /// A step of `height` between two blocks in the middle, smoothed with a strength of 20.
