@@ -10,10 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "core/deblocking.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/synth.hpp"
 #include "tests/pipeline/synthetic_truth.hpp"
+#include "tests/stereo/textured_pair.hpp"
 
 namespace roadstereo {
 namespace {
@@ -289,6 +291,42 @@ TEST(Pipeline, ColourAndSixteenBitsGiveSameMap) {
       ASSERT_TRUE(x == y || (std::isnan(x) && std::isnan(y)));
     }
   }
+}
+
+/// Adds up to ±3 to each block of 8×8 pixels, as strong compression does.
+void shift_blocks(Frame& frame, std::uint64_t seed) {
+  const std::size_t channels = frame.bytes.size() / static_cast<std::size_t>(frame.width * frame.height);
+  for (std::size_t k = 0; k < frame.bytes.size(); ++k) {
+    const auto pixel = static_cast<std::int64_t>(k / channels);
+    const double change = 6 * test::lattice(pixel % frame.width / 8, pixel / frame.width / 8, seed) - 3;
+    frame.bytes[k] = static_cast<std::uint8_t>(std::clamp(frame.bytes[k] + std::lround(change), 0L, 255L));
+  }
+}
+
+TEST(Pipeline, SmoothsStepsBetweenBlocks) {
+  const synth::SyntheticPair clean = test::named_pair("low_texture");
+  synth::SyntheticPair pair = clean;
+  shift_blocks(pair.left, 1);
+  shift_blocks(pair.right, 2);
+  PipelineOptions options;
+  Pipeline smoothing(options, pair.calibration);
+  options.deblock = false;
+  Pipeline plain(options, pair.calibration);
+  const FrameResult& smoothed = smoothing.process(pair.left.view(), pair.right.view());
+  const FrameResult& as_it_is = plain.process(pair.left.view(), pair.right.view());
+  EXPECT_EQ(smoothed.block_steps, as_it_is.block_steps);
+  const std::array<const GreyImage*, 2> images{&as_it_is.grey, &as_it_is.right},
+      better{&smoothed.grey, &smoothed.right};
+  for (std::size_t k = 0; k < images.size(); ++k) {
+    const double before = measure_block_steps(*images[k]).excess();
+    EXPECT_GT(before, 0.1);
+    EXPECT_EQ(as_it_is.block_steps[k], before);
+    EXPECT_LT(measure_block_steps(*better[k]).excess(), 0.75 * before);
+  }
+  smoothing.reset();
+  plain.reset();
+  EXPECT_TRUE(same_bits(smoothing.process(clean.left.view(), clean.right.view()).disparity,
+                        plain.process(clean.left.view(), clean.right.view()).disparity));
 }
 
 TEST(Pipeline, IsIndependentOfThreads) {
