@@ -42,7 +42,7 @@ struct BlockSteps {
 ROADSTEREO_HD inline int deblocking_strength(const BlockSteps& steps, int count) {
   constexpr double min_excess = 0.05, min_sigmas = 3;
   if (count == 0 || steps.excess() < min_excess + min_sigmas / std::sqrt(static_cast<double>(count))) return 0;
-  return static_cast<int>((2 * steps.between - steps.beside + count) / (2 * count));
+  return static_cast<int>((2 * steps.between - steps.beside + count) / (std::int64_t{2} * count));
 }
 
 ROADSTEREO_HD inline int absolute(int value) {
