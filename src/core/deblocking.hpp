@@ -18,13 +18,13 @@ struct BlockStepSamples {
   int rows = 0, borders_across = 0;  ///< rows, from the second on, and the borders that each of them crosses
   int columns = 0, borders_down = 0;
 
-  constexpr BlockStepSamples(int width, int height)
+  BlockStepSamples(int width, int height)
       : rows((height + step - 2) / step),
         borders_across(width < 2 ? 0 : (width - 2) / jpeg_block),
         columns((width + step - 1) / step),
         borders_down(height < 2 ? 0 : (height - 2) / jpeg_block) {}
-  constexpr int across() const { return rows * borders_across; }
-  constexpr int count() const { return across() + columns * borders_down; }
+  ROADSTEREO_HD int across() const { return rows * borders_across; }
+  ROADSTEREO_HD int count() const { return across() + columns * borders_down; }
 };
 
 /// Sums of absolute steps at the borders of blocks, and on both sides beside them.

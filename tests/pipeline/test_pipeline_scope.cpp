@@ -64,16 +64,18 @@ TEST(PipelineOffRoad, PictureWithoutHorizonKeepsEverything) {
   EXPECT_LT(missing(test::named_pair("uav")), 0.01);
 }
 
-/// What is given of a street and wrong by more than 1 px, whatever its standard error.
+/// Share of what is given and wrong by more than 1 px.
+double wrong_share(const synth::SyntheticPair& pair, double max_sigma_px) {
+  PipelineOptions options;
+  options.off_road.max_sigma_px = max_sigma_px;
+  Pipeline pipeline(options, pair.calibration);
+  return test::compare(pipeline.process(pair.left.view(), pair.right.view()).disparity, pair).share_above_1px;
+}
+
+/// Of a street, whatever its standard error.
 TEST(PipelineOffRoad, SearchOfSceneTellsVehiclesFromRoad) {
   const synth::SyntheticPair pair = crowded_street();
-  const auto wrong = [&](double max_sigma_px) {
-    PipelineOptions options;
-    options.off_road.max_sigma_px = max_sigma_px;
-    Pipeline pipeline(options, pair.calibration);
-    return test::compare(pipeline.process(pair.left.view(), pair.right.view()).disparity, pair).share_above_1px;
-  };
-  const double checked = wrong(10), unchecked = wrong(0);
+  const double checked = wrong_share(pair, 10), unchecked = wrong_share(pair, 0);
   RecordProperty("checked", std::to_string(checked));
   RecordProperty("unchecked", std::to_string(unchecked));
   EXPECT_LT(checked, 0.5 * unchecked);
@@ -100,13 +102,7 @@ TEST(PipelineOffRoad, HorizonIsWhereDepthIsInfinite) {
   for (int v = 0; v < pair.disparity.height(); ++v) {
     for (int u = 0; u < width; ++u) pair.disparity(u, v) += offset_px;
   }
-  const auto wrong = [&](double max_sigma_px) {
-    PipelineOptions options;
-    options.off_road.max_sigma_px = max_sigma_px;
-    Pipeline pipeline(options, pair.calibration);
-    return test::compare(pipeline.process(pair.left.view(), pair.right.view()).disparity, pair).share_above_1px;
-  };
-  EXPECT_LT(wrong(10), 0.9 * wrong(0));
+  EXPECT_LT(wrong_share(pair, 10), 0.9 * wrong_share(pair, 0));
 }
 
 }  // namespace

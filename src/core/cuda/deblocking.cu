@@ -13,7 +13,7 @@ constexpr int block_threads = 256;
 struct Pair {
   ImageView<std::int16_t> left, right;
 
-  __device__ const ImageView<std::int16_t>& image() const { return blockIdx.y == 0 ? left : right; }
+  __device__ ImageView<std::int16_t> image() const { return blockIdx.y == 0 ? left : right; }
 };
 
 struct Sums {
@@ -63,7 +63,7 @@ __global__ void measure_block_steps(Pair pair, BlockStepSamples samples, Deblock
 /// A thread a border and row: consecutive threads take the borders of a row.
 __global__ void smooth_steps_across(Pair pair, const DeblockedImage* images) {
   begin_kernel();
-  const ImageView<std::int16_t>& image = pair.image();
+  const ImageView<std::int16_t> image = pair.image();
   const int strength = images[blockIdx.y].strength, borders = (image.width() - 2) / jpeg_block;
   const int index = static_cast<int>(blockIdx.x * block_threads + threadIdx.x);
   if (strength == 0 || index >= borders * image.height()) return;
@@ -74,7 +74,7 @@ __global__ void smooth_steps_across(Pair pair, const DeblockedImage* images) {
 /// A thread a border and column.
 __global__ void smooth_steps_down(Pair pair, const DeblockedImage* images) {
   begin_kernel();
-  const ImageView<std::int16_t>& image = pair.image();
+  const ImageView<std::int16_t> image = pair.image();
   const int strength = images[blockIdx.y].strength, borders = (image.height() - 2) / jpeg_block;
   const int index = static_cast<int>(blockIdx.x * block_threads + threadIdx.x);
   if (strength == 0 || index >= borders * image.width()) return;
