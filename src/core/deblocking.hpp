@@ -38,7 +38,7 @@ struct BlockSteps {
 };
 
 /// Strength of the filter, the mean excess of a step in grey values, of `count` steps; 0 for images that are not
-/// compressed, whose excess is −0.04 to 0.03, and more by chance where the steps are few.
+/// compressed, whose excess is −0.03 to 0.02, and more by chance where the steps are few.
 ROADSTEREO_HD inline int deblocking_strength(const BlockSteps& steps, int count) {
   constexpr double min_excess = 0.05, min_sigmas = 3;
   if (count == 0 || steps.excess() < min_excess + min_sigmas / std::sqrt(static_cast<double>(count))) return 0;
