@@ -33,7 +33,8 @@ struct OffRoadOptions {
 ///
 /// `correlation`: of each cell, ⌈W/4⌉×⌈H/4⌉, −1 … 1, as lucas_kanade writes it. `disparity` and `sigma` (W×H, pixels,
 /// NaN invalid) become NaN in rejected cells. Masked pixels (`mask`: W×H, not 0 masked, or empty) do not affect the
-/// pixels around them. Throws Error when the sizes do not fit.
+/// pixels around them; what they hide counts neither as road nor as a way around it. Throws Error when the sizes do not
+/// fit.
 void reject_off_road(ImageView<const float> correlation, const DisparityPriorView& scene, const PerspectiveShift& shift,
                      ImageView<const std::uint8_t> mask, const OffRoadOptions& options, int threads,
                      Image<float>& disparity, Image<float>& sigma);

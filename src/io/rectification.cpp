@@ -1,12 +1,12 @@
 #include "roadstereo/io/rectification.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgproc.hpp>
 #include <tuple>
 
+#include "core/resampling.hpp"
 #include "io/calibration_formats.hpp"
-#include "io/frame_mat.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
@@ -126,9 +126,11 @@ std::pair<PixelMap, PixelMap> inner_maps(const StereoRig& rig, cv::Size size, Re
 }
 
 Frame resample(const Frame& frame, const PixelMap& map) {
-  cv::Mat out;
-  cv::remap(mat_over(frame.view()), out, map.x, map.y, cv::INTER_CUBIC, cv::BORDER_REPLICATE);
-  return frame_from(out, frame.order);
+  constexpr int all_cores = 0;
+  const auto view = [](const cv::Mat& places) {
+    return ImageView<const float>(places.ptr<float>(), places.cols, places.rows);
+  };
+  return roadstereo::resample(frame.view(), view(map.x), view(map.y), all_cores);
 }
 
 StereoCalibration calibration_of(const RectifiedCameras& cameras, cv::Size size) {
@@ -155,6 +157,8 @@ struct Rectifier::Maps {
 
 Rectifier::Rectifier(const StereoRig& rig, int width, int height) : maps_(std::make_unique<Maps>()) {
   check_size(rig, width, height);
+  if (std::min(width, height) < 2)
+    fail("the images have ", size_text(width, height), " pixels; rectification needs 2×2");
   StereoRig sized = rig;
   sized.width = width;
   sized.height = height;

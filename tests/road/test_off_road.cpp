@@ -67,6 +67,27 @@ TEST(RejectOffRoad, MaskedPixelsDoNotCount) {
                Error);
 }
 
+/// A bonnet that reaches both sides is no way around the road: what it touches stays, as at a bare lower border. What
+/// lies below a masked sky or beside a black border is outside as if they were not there.
+TEST(RejectOffRoad, MaskIsNoWayAroundRoad) {
+  test::StreetMaps street(400, 240, 4);
+  street.paint_scene({30, 48, 50, 54}, 30);  // touches the bonnet
+  street.paint_scene({60, 2, 70, 40}, 30);   // touches the sky
+  street.paint_scene({0, 30, 20, 40}, 30);   // touches the black border
+  Image<std::uint8_t> mask(400, 240, 0);
+  const auto paint_mask = [&](const Cells& cells) {
+    street.paint_holes(cells);
+    street.for_pixels(cells, [&](int u, int v) { mask(u, v) = 255; });
+  };
+  paint_mask({0, 54, 100, 60});
+  paint_mask({0, 0, 100, 2});
+  paint_mask({0, 0, 1, 60});
+  reject_off_road(street.correlation, street.scene.view(), street.shift, mask, {1}, 1, street.disparity, street.sigma);
+  EXPECT_TRUE(all_are(street, {22, 41, 100, 54}, false));
+  EXPECT_TRUE(all_are(street, {64, 26, 66, 38}, true));
+  EXPECT_TRUE(all_are(street, {1, 32, 16, 38}, true));
+}
+
 /// At the edge of a step the geometric mean is that of both sides.
 TEST(RejectOffRoad, SigmaIsThatOfTheSurroundings) {
   constexpr float low = 0.125F, high = 2.0F;  // powers of two: their logarithms are exact

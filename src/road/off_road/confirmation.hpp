@@ -79,6 +79,7 @@ enum CellState : std::uint8_t {
   plausible = 1,     ///< nothing speaks against it
   unconfirmed = 2,   ///< not is_confirmed
   contradicted = 3,  ///< the scene has another disparity there
+  masked = 8,        ///< has masked pixels: not known
 };
 /// Added to the state of a cell that cells on the road do not enclose.
 constexpr int outside = 4;
@@ -126,7 +127,7 @@ ROADSTEREO_HD inline CellState assess_cell(const CoarseScene& scene, float resid
 /// the edge of an object was matched wrongly there.
 ROADSTEREO_HD inline bool is_rejected(ImageView<const CellState> states, int i, int j) {
   const int state = states(i, j);
-  if (state < outside) return false;
+  if (state < outside || state == masked) return false;
   if (state != outside + plausible) return true;
   for (int y = j > 0 ? j - 1 : 0; y <= j + 1 && y < states.height(); ++y) {
     for (int x = i > 0 ? i - 1 : 0; x <= i + 1 && x < states.width(); ++x) {

@@ -123,14 +123,37 @@ void assess_cells(const CoarseScene& scene, ImageView<const float> correlation, 
     SumsAround around(sums.sigmas, first, memory.data() + columns * static_cast<std::size_t>(worker));
     for (int j = first; j < last; ++j) {
       around.next_row(j, [&](int i, const LogSigmas& of_surroundings) {
+        const int cell_width = std::min(alignment_cell, disparity.width() - i * alignment_cell);
+        const int cell_height = std::min(alignment_cell, disparity.height() - j * alignment_cell);
         const bool confirmed = is_confirmed(of_surroundings, correlation(i, j), log2_max_sigma);
-        states.row(j)[i] = assess_cell(scene, sums.residuals.row(j)[i].mean(), confirmed, i, j);
+        states.row(j)[i] = sums.sigmas.row(j)[i].count < cell_width * cell_height
+                               ? masked
+                               : assess_cell(scene, sums.residuals.row(j)[i].mean(), confirmed, i, j);
       });
     }
   });
 }
 
-/// Flood fill from the upper, left and right border through cells that are not on the road and their eight neighbours.
+/// Columns first … last of cells of which some are not masked: what lies beside a black border begins there.
+struct ColumnRange {
+  int first, last;
+};
+
+ColumnRange unmasked_columns(const CellMap<CellState>& states) {
+  const auto is_masked = [&](int i) {
+    for (int j = 0; j < states.rows; ++j) {
+      if (states.row(j)[i] != masked) return false;
+    }
+    return true;
+  };
+  ColumnRange range{0, states.columns - 1};
+  while (range.first < range.last && is_masked(range.first)) ++range.first;
+  while (range.last > range.first && is_masked(range.last)) --range.last;
+  return range;
+}
+
+/// Flood fill from the upper, left and right border, or from masked cells there, through cells that are not on the road
+/// and their eight neighbours. It does not go along masked cells, such as those of a bonnet.
 void mark_outside(CellMap<CellState>& states) {
   auto front = scratch_vector<int>();
   front.reserve(states.values.size());
@@ -140,10 +163,15 @@ void mark_outside(CellMap<CellState>& states) {
     state = static_cast<CellState>(state + outside);
     front.push_back(j * states.columns + i);
   };
-  for (int i = 0; i < states.columns; ++i) visit(i, 0);
+  const auto [left, right] = unmasked_columns(states);
+  for (int i = left; i <= right; ++i) {
+    int j = 0;
+    while (j + 1 < states.rows && states.row(j)[i] == masked) ++j;
+    visit(i, j);
+  }
   for (int j = 0; j < states.rows; ++j) {
-    visit(0, j);
-    visit(states.columns - 1, j);
+    visit(left, j);
+    visit(right, j);
   }
   while (!front.empty()) {
     const int i = front.back() % states.columns, j = front.back() / states.columns;
