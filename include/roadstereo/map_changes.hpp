@@ -32,6 +32,11 @@ struct DamageChange {
 /// Returns whether the map measures at least half of a footprint.
 bool measures(const RoadMap& map, const MapCells& footprint);
 
+/// Returns whether a later map knows better than an earlier record: it has a record of the same damage, or heights in
+/// the footprint by which the damage is repaired.
+bool is_superseded(const RoadDamageRecord& before, const RoadMap& map_before, std::span<const RoadDamageRecord> after,
+                   const RoadMap& map_after);
+
 /// Compares the damages of two maps of one road in the same axes. Two records belong to one damage if they are of the
 /// same kind and their footprints overlap by a fifth of the smaller one. The damage has changed if its depth or area
 /// differs by more than two standard errors of the difference, or if the heights in the footprint have changed by more

@@ -75,9 +75,14 @@ std::vector<Corner> trace_outline(const Image<std::uint16_t>& ids, const Damage&
     most = std::max(most, off);
   }
   ring.push_back(ring[0]);
+  // Of a thin region a smaller tolerance leaves more than a line.
+  constexpr std::size_t min_corners = 3;
   std::vector<Corner> kept;
-  simplify(ring, 0, opposite, tolerance_px, kept);
-  simplify(ring, opposite, ring.size() - 1, tolerance_px, kept);
+  for (double tolerance = tolerance_px; kept.size() < min_corners; tolerance /= 2) {
+    kept.clear();
+    simplify(ring, 0, opposite, tolerance, kept);
+    simplify(ring, opposite, ring.size() - 1, tolerance, kept);
+  }
   return kept;
 }
 

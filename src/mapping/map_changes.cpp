@@ -141,6 +141,16 @@ std::optional<std::size_t> partner_of(const RoadDamageRecord& record, std::span<
   return partner;
 }
 
+/// Change of the heights in the footprint of a record; none where one of the maps does not measure it.
+std::optional<Measurement> height_change(const RoadDamageRecord& record, const RoadMap& before, const RoadMap& after) {
+  if (record.best.footprint.empty()) return std::nullopt;
+  return PlacePair(record.best.footprint, before, after).change();
+}
+
+bool is_repaired(const RoadDamageRecord& record, const std::optional<Measurement>& height_change) {
+  return height_change && growth(record.best.damage.kind, *height_change) < 0;
+}
+
 }  // namespace
 
 const char* name_of(DamageChangeKind kind) {
@@ -161,15 +171,16 @@ bool measures(const RoadMap& map, const MapCells& footprint) {
   return !footprint.empty() && PlacePair(footprint, map, map).is_measured();
 }
 
+bool is_superseded(const RoadDamageRecord& before, const RoadMap& map_before, std::span<const RoadDamageRecord> after,
+                   const RoadMap& map_after) {
+  return partner_of(before, after) || is_repaired(before, height_change(before, map_before, map_after));
+}
+
 std::vector<DamageChange> compare_damage(std::span<const RoadDamageRecord> before, const RoadMap& map_before,
                                          std::span<const RoadDamageRecord> after, const RoadMap& map_after) {
   std::vector<DamageChange> changes;
-  const auto height_change = [&](const RoadDamageRecord& record) {
-    return record.best.footprint.empty() ? std::nullopt
-                                         : PlacePair(record.best.footprint, map_before, map_after).change();
-  };
   for (std::size_t k = 0; k < after.size(); ++k) {
-    const auto moved = height_change(after[k]);
+    const auto moved = height_change(after[k], map_before, map_after);
     if (!moved) continue;
     const std::optional<std::size_t> partner = partner_of(after[k], before);
     if (partner) {
@@ -181,8 +192,8 @@ std::vector<DamageChange> compare_damage(std::span<const RoadDamageRecord> befor
   }
   for (std::size_t k = 0; k < before.size(); ++k) {
     if (partner_of(before[k], after)) continue;
-    const auto moved = height_change(before[k]);
-    if (moved && growth(before[k].best.damage.kind, *moved) < 0) {
+    const auto moved = height_change(before[k], map_before, map_after);
+    if (is_repaired(before[k], moved)) {
       changes.push_back({DamageChangeKind::repaired, k, std::nullopt, *moved});
     }
   }

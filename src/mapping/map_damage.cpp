@@ -128,9 +128,9 @@ MapDamage map_damage(const Damage& damage, const DamageMap& found, const MapBox&
   return result;
 }
 
-/// Whether two damages of one kind share a footprint cell.
+/// Whether two findings are of one damage; neighbours may share a few footprint cells.
 bool overlap(const MapDamage& one, const MapDamage& other) {
-  return one.damage.kind == other.damage.kind && overlap_share(one.footprint, other.footprint) > 0;
+  return one.damage.kind == other.damage.kind && overlap_share(one.footprint, other.footprint) >= min_overlap_share;
 }
 
 /// Takes of two findings in overlapping windows the one that is not cut, or else the larger.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numbers>
 #include <set>
 #include <tuple>
@@ -86,7 +87,13 @@ void join_grown(std::vector<Group>& groups) {
   }
 }
 
-/// The map first, since its noise is least, then whole sightings before cut ones; the most confident first.
+/// Whether a finding is whole and likely enough to tell what is there.
+bool is_clear(const MapDamage& found, double min_confidence) {
+  return !found.damage.cut_by_border && found.damage.confidence >= min_confidence;
+}
+
+/// The clear findings of the map first, since its noise is least, then whole sightings before cut ones, the most
+/// confident first, then the rest of the map.
 std::vector<Group> group_findings(std::span<const DamageSighting> sightings, std::span<const MapDamage> in_map,
                                   double min_confidence) {
   const auto rank = [](const MapDamage& found) {
@@ -99,13 +106,19 @@ std::vector<Group> group_findings(std::span<const DamageSighting> sightings, std
   for (const DamageSighting& sighting : sightings) ordered.push_back(&sighting);
   std::stable_sort(ordered.begin(), ordered.end(), [&](auto* a, auto* b) { return rank(a->found) < rank(b->found); });
   std::vector<Group> groups;
-  for (const MapDamage* found : findings) {
-    Group& group = join_group(*found, min_confidence, groups);
-    if (group.in_map == nullptr) group.in_map = found;
-  }
+  const auto first_doubtful = std::stable_partition(
+      findings.begin(), findings.end(), [&](const MapDamage* found) { return is_clear(*found, min_confidence); });
+  const auto join_map = [&](auto first, auto last) {
+    for (; first != last; ++first) {
+      Group& group = join_group(**first, min_confidence, groups);
+      if (group.in_map == nullptr) group.in_map = *first;
+    }
+  };
+  join_map(findings.begin(), first_doubtful);
   for (const DamageSighting* sighting : ordered) {
     join_group(sighting->found, min_confidence, groups).sightings.push_back(sighting);
   }
+  join_map(first_doubtful, findings.end());
   join_grown(groups);
   return groups;
 }
@@ -204,9 +217,10 @@ int views_of(const MapCells& footprint, const RoadMap& map) {
   return views.empty() ? 0 : static_cast<int>(upper_median(views));
 }
 
-/// Best finding of a group: of the map, else the sighting that is whole and has the smallest error.
-const MapDamage& best_of(const Group& group) {
-  if (group.in_map != nullptr) return *group.in_map;
+/// Best finding of a group: of the map unless a sighting alone is clear, else the sighting that is whole and has the
+/// smallest error.
+const MapDamage& best_of(const Group& group, bool any_clear, double min_confidence) {
+  if (group.in_map != nullptr && (!any_clear || is_clear(*group.in_map, min_confidence))) return *group.in_map;
   const auto best = std::min_element(group.sightings.begin(), group.sightings.end(), [](auto* a, auto* b) {
     const Damage &one = a->found.damage, &other = b->found.damage;
     return std::tuple(one.cut_by_border, one.metrics->max_depth_m.std_error) <
@@ -222,6 +236,32 @@ bool is_depth_resolved(const Group& group, const Measurement& fused) {
                      [](auto* one) { return one->found.damage.evidence.is_depth_resolved(); });
 }
 
+/// Distress that the most confidence speaks for: a frame knows the direction of the road, the map does not.
+Distress distress_of(const std::vector<const Damage*>& seen, Distress otherwise) {
+  std::map<Distress, double> votes;
+  for (const Damage* damage : seen) votes[damage->metrics->distress] += damage->confidence;
+  const auto most = std::max_element(votes.begin(), votes.end(),
+                                     [](const auto& one, const auto& other) { return one.second < other.second; });
+  return most == votes.end() ? otherwise : most->first;
+}
+
+/// Whether most frames have withheld the severity, since their depths are not to be trusted (withhold_severity).
+bool is_withheld(const std::vector<const Damage*>& seen, const SeverityScheme& scheme) {
+  const auto withheld = std::count_if(seen.begin(), seen.end(), [&](const Damage* damage) {
+    const SeverityTable* const table = scheme.find(damage->metrics->distress);
+    return table != nullptr && !table->classes.empty() && damage->metrics->severity == Severity::unknown;
+  });
+  return 2 * withheld > static_cast<std::ptrdiff_t>(seen.size());
+}
+
+/// Area of a damage of which there are only parts: that of all findings together, at least that of the best one.
+Measurement area_of_all(const Damage& best, const MapCells& footprint) {
+  const Measurement& of_best = best.metrics->area_m2;
+  const double area = static_cast<double>(footprint.size()) * footprint_m * footprint_m;
+  if (!best.cut_by_border || !(area > of_best.value) || !(of_best.value > 0)) return of_best;
+  return {area, of_best.std_error * area / of_best.value};
+}
+
 void require_metrics(const MapDamage& found) {
   if (!found.damage.metrics)
     fail("damage ", found.damage.id, " has no metric values; only measured damages are joined");
@@ -230,11 +270,10 @@ void require_metrics(const MapDamage& found) {
 RoadDamageRecord record_of(const Group& group, const RoadMap& map, const DamageOptions& options) {
   const double view_factor = map.view_factor();
   // What is hardly seen is hardly measured: such sightings count only where there are no others.
-  const bool any_confident = std::any_of(group.sightings.begin(), group.sightings.end(), [&](auto* one) {
-    return one->found.damage.confidence >= options.min_confidence && !one->found.damage.cut_by_border;
-  });
+  const bool any_confident = std::any_of(group.sightings.begin(), group.sightings.end(),
+                                         [&](auto* one) { return is_clear(one->found, options.min_confidence); });
   RoadDamageRecord record;
-  record.best = best_of(group);
+  record.best = best_of(group, any_confident, options.min_confidence);
   record.best.footprint = group.footprint;
   record.found_in_map = group.in_map != nullptr;
   record.views = views_of(group.footprint, map);
@@ -254,11 +293,12 @@ RoadDamageRecord record_of(const Group& group, const RoadMap& map, const DamageO
   const std::vector<const Damage*> seen = one_per_frame(group.sightings);
   record.sightings = static_cast<int>(seen.size());
   record.passes = static_cast<int>(passes.size());
-  const DamageMetrics& best = *record.best.damage.metrics;
+  DamageMetrics& best = *record.best.damage.metrics;
+  best.distress = distress_of(seen, best.distress);
   const bool whole = !depth.empty();
   record.max_depth_m = whole ? fuse(depth, view_factor) : best.max_depth_m;
   record.mean_depth_m = whole ? fuse(mean_depth, view_factor) : best.mean_depth_m;
-  record.area_m2 = whole ? fuse(area, view_factor) : best.area_m2;
+  record.area_m2 = whole ? fuse(area, view_factor) : area_of_all(record.best.damage, group.footprint);
   record.volume_m3 = whole ? fuse(volume, view_factor) : best.volume_m3;
   record.confidence = seen.empty() ? 0 : joint_confidence(seen, record.views, view_factor);
   if (group.in_map != nullptr) {
@@ -272,6 +312,7 @@ RoadDamageRecord record_of(const Group& group, const RoadMap& map, const DamageO
   fused.diameter_m = 2 * std::sqrt(record.area_m2.value / std::numbers::pi);
   const bool resolvable = is_depth_resolved(group, fused.max_depth_m) || fused.mean_depth_m.is_resolved();
   grade(options.severity, resolvable, fused);
+  if (is_withheld(seen, options.severity)) return record;
   record.severity_probabilities = fused.severity_probabilities;
   record.severity = fused.severity;
   return record;

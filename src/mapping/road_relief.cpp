@@ -16,20 +16,22 @@
 namespace roadstereo {
 namespace {
 
-constexpr double node_m = 0.1;
-constexpr double radius_m = 0.75;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+constexpr double radius_nodes = 7.5;  ///< of the plane around a node
 
 /// Means of the cells around the nodes of a grid; NaN without a measurement. Row 0 is the one of smallest y.
 struct NodeGrid {
+  double node_m = 0.1;
   int first_column = 0, first_row = 0;  ///< node (i, j) lies at ((first_column + i)·node_m, …)
   Image<float> height;
 };
 
 NodeGrid make_nodes(const RoadMap& map, const MapBox& box) {
   const double cell_m = map.options().cell_m;
-  const int margin = static_cast<int>(std::ceil(radius_m / node_m)) + 1;
+  const int margin = static_cast<int>(std::ceil(radius_nodes)) + 1;
   NodeGrid grid;
+  const double node_m = grid.node_m = std::max(grid.node_m, cell_m);
   grid.first_column = static_cast<int>(std::floor(box.i0 * cell_m / node_m)) - margin;
   grid.first_row = static_cast<int>(std::floor(box.j0 * cell_m / node_m)) - margin;
   const int columns =
@@ -65,7 +67,8 @@ float reference_at(const NodeGrid& grid, int column, int row) {
   };
   constexpr int iterations = 4;
   constexpr double smallest = 1e-9, min_scale_m = 1e-4;
-  const int reach = static_cast<int>(radius_m / node_m);
+  const double node_m = grid.node_m, radius_m = radius_nodes * node_m;
+  const int reach = static_cast<int>(radius_nodes);
   std::vector<Neighbour> neighbours;
   for (int j = std::max(0, row - reach); j <= std::min(grid.height.height() - 1, row + reach); ++j) {
     for (int i = std::max(0, column - reach); i <= std::min(grid.height.width() - 1, column + reach); ++i) {
@@ -74,7 +77,7 @@ float reference_at(const NodeGrid& grid, int column, int row) {
         neighbours.push_back({x, y, grid.height(i, j), 0});
     }
   }
-  const double possible = std::numbers::pi * radius_m * radius_m / (node_m * node_m);
+  const double possible = std::numbers::pi * radius_nodes * radius_nodes;
   if (static_cast<double>(neighbours.size()) < possible / 5) return nan;
   std::vector<double> heights;
   heights.reserve(neighbours.size());
@@ -120,7 +123,7 @@ MapRaster read_relief(const RoadMap& map, const MapBox& box) {
         reference(column, row) = reference_at(grid, column, row);
     }
   });
-  const double cell_m = map.options().cell_m;
+  const double cell_m = map.options().cell_m, node_m = grid.node_m;
   for (int v = 0; v < box.rows; ++v) {
     const double y = (box.j0 + box.rows - 1 - v + 0.5) * cell_m / node_m - grid.first_row;
     const int row = static_cast<int>(y);

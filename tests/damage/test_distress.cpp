@@ -166,6 +166,16 @@ TEST(Outline, FollowsPixels) {
   EXPECT_TRUE(trace_outline(ids, damage, 0.1).empty());
 }
 
+/// A region thinner than the tolerance is no line.
+TEST(Outline, OfThinRegionHasArea) {
+  Image<std::uint16_t> ids(60, 20, 0);
+  for (int u = 3; u < 43; ++u) ids(u, 5) = ids(u, 6) = 1;
+  Damage damage;
+  damage.id = 1;
+  damage.box_px = {3, 5, 42, 6};
+  EXPECT_GE(trace_outline(ids, damage, 2).size(), 3U);
+}
+
 /// A camera 2 m above the road that looks straight down sees 640×480 pixels of 2 mm.
 TEST(RoadFootprint, StraightDown) {
   const Map map([](double, double) { return 0.0; });

@@ -353,9 +353,9 @@ TEST_F(FlightCommand, TellsInHowManyFramesThereIsNoRoad) {
   }
   const Outcome outcome = run("inspect flight.txt --calibration rig.yaml --output out --to 2");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("No road was found in 2 of 3 frames"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("Damage could not be searched for in 2 of 3 frames"), std::string::npos) << outcome.out;
   const std::string report = read_text(folder_ / "out/report.html");
-  EXPECT_NE(report.find("No road was found in 2 of 3 frames"), std::string::npos);
+  EXPECT_NE(report.find("Damage could not be searched for in 2 of 3 frames"), std::string::npos);
   EXPECT_EQ(report.find("No damage found.</strong>"), std::string::npos) << "without a word of the other frames";
   EXPECT_EQ(json_file("out/summary.json")["frames"]["inspected"], 1);
 }

@@ -100,8 +100,17 @@ TEST_F(MapChanges, PlacesThatOneDayDoesNotMeasureAreLeftOut) {
   const RoadMap elsewhere = map_of(0, "elsewhere", 400, 30);
   EXPECT_TRUE(compare_damage(none_, elsewhere, small_, deep_).empty());
   EXPECT_TRUE(compare_damage(small_, deep_, none_, elsewhere).empty());
+  EXPECT_FALSE(is_superseded(small_[0], deep_, none_, elsewhere));
   EXPECT_TRUE(measures(deep_, small_[0].best.footprint));
   EXPECT_FALSE(measures(elsewhere, small_[0].best.footprint));
+}
+
+// A later day that measures the same heights but is too noisy to list the damage does not make it go away.
+TEST_F(MapChanges, OnlyPartnerOrRepairSupersedes) {
+  const RoadMap again = map_of(0.05, "again", 300);
+  EXPECT_FALSE(is_superseded(small_[0], deep_, none_, again));
+  EXPECT_TRUE(is_superseded(small_[0], deep_, small_, again));
+  EXPECT_TRUE(is_superseded(small_[0], deep_, none_, flat_));
 }
 
 // The box around a rut that runs diagonally for 400 m has 1.6e9 cells of 1 cm.
@@ -111,6 +120,7 @@ TEST_F(MapChanges, LongDamageIsReadInParts) {
   MapCells& cells = rut.best.footprint;
   for (int k = 100; k < 20'000; ++k) cells.push_back({k, k});
   EXPECT_FALSE(measures(deep_, cells));
+  EXPECT_FALSE(is_superseded(rut, deep_, none_, flat_));
   EXPECT_TRUE(compare_damage(none_, flat_, std::vector{rut}, deep_).empty());
 }
 

@@ -141,6 +141,66 @@ TEST_F(JoinDamage, NearFramesDecide) {
   EXPECT_NEAR(records[0].confidence, 1 / (1 + std::exp(-mean)), 1e-6);
 }
 
+// The map does not know the direction of the road: a rut across its y axis is none there.
+TEST_F(JoinDamage, FramesTellDistress) {
+  MapDamage in_map = finding(0, 0, 10, 0.02, 0.001, 0.95), in_frame = in_map;
+  in_map.damage.metrics->distress = Distress::depression;
+  in_frame.damage.metrics->distress = Distress::rut;
+  in_frame.damage.metrics->severity = Severity::medium;
+  const auto records = join_damage({{{0, 0, in_frame}, {0, 1, in_frame}}}, {{in_map}}, map_, {});
+  ASSERT_EQ(records.size(), 1U);
+  EXPECT_TRUE(records[0].found_in_map);
+  EXPECT_EQ(records[0].best.damage.metrics->distress, Distress::rut);
+  EXPECT_EQ(records[0].severity, Severity::medium) << "mean depth 10 mm, 15 mm at most";
+  const auto alone = join_damage({}, {{in_map}}, map_, {});
+  ASSERT_EQ(alone.size(), 1U);
+  EXPECT_EQ(alone[0].best.damage.metrics->distress, Distress::depression);
+}
+
+// Two potholes that frames see whole, in a gentle region of the map that is hardly damage.
+TEST_F(JoinDamage, DoubtfulFindingOfMapJoinsNoNeighbours) {
+  std::vector<DamageSighting> sightings;
+  for (int frame = 0; frame < 4; ++frame) {
+    sightings.push_back({0, frame, finding(10, 10, 10, 0.05, 0.004, 0.9)});
+    sightings.push_back({0, frame, finding(30, 10, 10, 0.04, 0.004, 0.9)});
+  }
+  const MapDamage gentle = finding(0, 0, 50, 0.012, 0.002, 0.02);
+  const auto records = join_damage(sightings, {{gentle}}, map_, {});
+  ASSERT_EQ(records.size(), 2U);
+  EXPECT_NEAR(records[0].best.at_m[0], 15 * footprint_m, 1e-9);
+  EXPECT_NEAR(records[1].best.at_m[0], 35 * footprint_m, 1e-9);
+}
+
+// Frames whose depths are not to be trusted have withheld the severity.
+TEST_F(JoinDamage, WithheldSeverityIsWithheld) {
+  MapDamage graded = finding(0, 0, 10, 0.05, 0.002, 0.9);
+  graded.damage.metrics->distress = Distress::pothole;
+  MapDamage withheld = graded;
+  graded.damage.metrics->severity = Severity::medium;
+  const auto severity_of = [&](int of_graded, int of_withheld) {
+    std::vector<DamageSighting> sightings;
+    for (int k = 0; k < of_graded; ++k) sightings.push_back({0, k, graded});
+    for (int k = 0; k < of_withheld; ++k) sightings.push_back({1, k, withheld});
+    return join_damage(sightings, {}, map_, {}).at(0).severity;
+  };
+  EXPECT_EQ(severity_of(1, 2), Severity::unknown);
+  EXPECT_NE(severity_of(2, 1), Severity::unknown);
+}
+
+// Each frame shows a part of what goes on: 10 × 20 cells of 0.02 m are 0.08 m².
+TEST_F(JoinDamage, DamageCutInAllFramesHasAreaOfAll) {
+  std::vector<DamageSighting> sightings;
+  for (int frame = 0; frame < 3; ++frame) {
+    sightings.push_back({0, frame, finding(0, 5 * frame, 10, 0.05, 0.004, 0.9)});
+    sightings.back().found.damage.cut_by_border = true;
+    sightings.back().found.damage.metrics->area_m2 = {0.04, 0.004};
+  }
+  const auto records = join_damage(sightings, {}, map_, {});
+  ASSERT_EQ(records.size(), 1U);
+  EXPECT_NEAR(records[0].area_m2.value, 0.08, 1e-9);
+  EXPECT_NEAR(records[0].area_m2.std_error, 0.008, 1e-9);
+}
+
 TEST_F(JoinDamage, NeedsMetricValues) {
   MapDamage unmeasured = finding(0, 0, 10, 0.02, 0.002, 0.9);
   unmeasured.damage.metrics.reset();

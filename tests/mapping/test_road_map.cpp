@@ -63,6 +63,18 @@ TEST_F(RoadMapTest, ExactDisparitiesGiveExactHeights) {
   }
 }
 
+// Cells wider than the nodes that the smooth surface has by default.
+TEST_F(RoadMapTest, CoarseCellsHaveRelief) {
+  RoadMapOptions coarse = options();
+  coarse.cell_m = 0.4;
+  RoadMap map(folder_, coarse);
+  for (int j = -4; j <= 4; ++j) {
+    for (int i = -4; i <= 4; ++i) map.add(TestFrame(looking_down(0.8 * i, 0.8 * j, 2), {}, 0, 1).frame);
+  }
+  const MapRaster relief = read_relief(map, {-4, -4, 8, 8});
+  for (std::size_t k = 0; k < relief.height.pixels(); ++k) ASSERT_NEAR(relief.height.row(0)[k], 0, 1e-4) << k;
+}
+
 // Independent noise of n frames: the error of a cell is that of one divided by √n, and the standard error says so.
 TEST_F(RoadMapTest, StandardErrorIsThatOfTheMean) {
   constexpr int frames = 40;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/degrees.hpp"
+
 namespace roadstereo::cli {
 
 namespace {
@@ -40,7 +42,9 @@ std::vector<std::array<double, 2>> on_earth(const std::vector<std::array<double,
 }  // namespace
 
 FlightPositions::FlightPositions(const TrackSettings& settings)
-    : offset_s_(settings.offset_s), track_(io::read_track(settings.file, options_of(settings))) {}
+    : offset_s_(settings.offset_s),
+      mount_yaw_rad_(to_radians(settings.mount_yaw_deg)),
+      track_(io::read_track(settings.file, options_of(settings))) {}
 
 void FlightPositions::add(const io::FlightFrame& frame, const std::vector<std::int64_t>& road_damages) {
   io::GeoFrame geo;
@@ -57,13 +61,20 @@ void FlightPositions::add(const io::FlightFrame& frame, const std::vector<std::i
   geo.height_m = frame.height_m;
   geo.sigma_d_px = frame.sigma_d_px;
   geo.valid_share = frame.valid_share;
-  if (std::isfinite(frame.sigma_d_px)) geo.damages = static_cast<std::int64_t>(frame.damages.size());
+  if (std::isfinite(frame.noise_px)) geo.damages = static_cast<std::int64_t>(frame.damages.size());
   geo.status = name_of(frame.status);
   for (std::size_t i = 0; i < frame.damages.size(); ++i) {
     sightings_.push_back({road_damages[i], geo.index, geo.name, geo.time_s, frame.damages[i],
                           position_of(frame.damages[i], geo.position, frame.height_m)});
   }
   frames_.push_back(std::move(geo));
+}
+
+/// Distance of a damage from the camera along the travel, which the camera need not look along; 0 if unknown.
+double FlightPositions::distance_ahead_m(const Damage& damage) const {
+  if (!damage.metrics) return 0;
+  const auto& [right_m, forward_m] = damage.metrics->road_centroid_m;
+  return forward_m * std::cos(mount_yaw_rad_) - right_m * std::sin(mount_yaw_rad_);
 }
 
 /// Distance along the track. Steps are taken from the last position that is well away, so that the noise of the
@@ -85,7 +96,7 @@ void FlightPositions::locate(io::RoadDamage& damage) const {
   if (frame == frames_.end() || frame->index != damage.frame) return;
   damage.time_s = frame->time_s;
   if (!frame->position) return;
-  damage.station_m = frame->station_m;
+  damage.station_m = frame->station_m + distance_ahead_m(damage.best);
   damage.position = position_of(damage.best, frame->position, frame->height_m);
   if (!damage.best.metrics) return;
   damage.outline_deg = on_earth(damage.best.metrics->outline_m, frame->position);

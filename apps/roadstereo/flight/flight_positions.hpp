@@ -41,8 +41,10 @@ class FlightPositions {
 
  private:
   double station_at(const io::GeoPosition& position);
+  double distance_ahead_m(const Damage& damage) const;
 
   double offset_s_;
+  double mount_yaw_rad_;
   io::Track track_;
   std::vector<io::GeoFrame> frames_;
   std::vector<io::GeoSighting> sightings_;

@@ -184,6 +184,7 @@ std::string FlightResults::report(const FlightSettings& settings, const FlightRu
   report.properties = properties_of(run, summary_);
   report.notices = notices_of(run, summary_);
   report.curves = summary_.curves;
+  report.inspected = summary_.inspected;
   report.thumbnails = read_thumbnails(folder);
   report.map = run.map;
   report.damages = reported(damages, folder);

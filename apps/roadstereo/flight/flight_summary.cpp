@@ -21,7 +21,7 @@ void FlightSummary::add(const io::FlightFrame& frame) {
   if (frame.status == io::FrameStatus::good) {
     road_unknown += frame.road_status == RoadStatus::none ? 1 : 0;
     road_estimated += frame.road_status == RoadStatus::found || frame.road_status == RoadStatus::weak ? 1 : 0;
-    inspected += std::isfinite(frame.sigma_d_px) ? 1 : 0;
+    inspected += std::isfinite(frame.noise_px) ? 1 : 0;
     matching_ms.push_back(frame.matching_ms);
     damage_ms.push_back(frame.damage_ms);
     valid_share.push_back(frame.valid_share);
@@ -38,7 +38,7 @@ void FlightSummary::add(const io::FlightFrame& frame) {
 
 std::string FlightSummary::no_road_text() const {
   if (inspected == good) return {};
-  return fmt::format("No road was found in {} of {} frames, so damage could not be searched for there",
+  return fmt::format("Damage could not be searched for in {} of {} frames, where no road was found or too little of it",
                      good - inspected, frames);
 }
 

@@ -20,7 +20,7 @@ struct FlightSummary {
   std::int64_t failed = 0;
   std::int64_t road_estimated = 0;      ///< frames whose road model was estimated, not tracked
   std::int64_t road_unknown = 0;        ///< good frames without a road model before matching
-  std::int64_t inspected = 0;           ///< frames with a road after matching
+  std::int64_t inspected = 0;           ///< frames in which damage was searched for
   std::optional<std::int64_t> located;  ///< frames with a position; absent without a track
   std::string no_position_reason;       ///< reason if no frame has a position
   std::string track_outliers;           ///< which fixes of the track were left out

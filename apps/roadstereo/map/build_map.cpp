@@ -17,6 +17,7 @@
 #include "progress.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/ground_plane.hpp"
+#include "roadstereo/health.hpp"
 #include "roadstereo/io/trajectory_file.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/road_profile.hpp"
@@ -213,6 +214,8 @@ class MapBuilder {
       if (days_.empty()) set_axes(result, pose, calibration);
       const RigidTransform camera_to_map = compose(state_.world_to_map, pose.camera_to_world);
       pipeline.find_damage(damage_);
+      const PipelineOptions& options = pipeline.options();
+      withhold_severity(measure_health(result, damage_, calibration, options.damage, options.threads), damage_);
       const auto foot_m = transform_point(camera_to_map, road_axes(ground_plane(road, calibration)).origin_m);
       MappedFrame mapped{state_.pass,
                          pose.frame,

@@ -154,14 +154,17 @@ std::string roughness_text(const std::vector<LaneProfiles>& lanes) {
   return text.empty() ? "  roughness no profile is 11.5 m long\n" : text;
 }
 
-/// Takes every place as the newest day that measures it has it; ids from 1, deepest first.
+/// Takes every damage as the newest day that lists it has it, unless a later one shows that it is gone; ids from 1,
+/// deepest first.
 void add_newest(const BuiltMap& built, const std::vector<std::vector<RoadDamageRecord>>& of_days, MapResults& results) {
   std::vector<std::pair<std::size_t, const RoadDamageRecord*>> newest;
   for (std::size_t day = 0; day < of_days.size(); ++day) {
     for (const RoadDamageRecord& record : of_days[day]) {
-      const auto seen_again = [&](const DayMap& later) { return measures(later.map, record.best.footprint); };
-      const auto later = built.days.begin() + static_cast<std::ptrdiff_t>(day) + 1;
-      if (std::none_of(later, built.days.end(), seen_again)) newest.emplace_back(day, &record);
+      bool superseded = false;
+      for (std::size_t later = day + 1; later < built.days.size(); ++later) {
+        superseded |= is_superseded(record, built.days[day].map, of_days[later], built.days[later].map);
+      }
+      if (!superseded) newest.emplace_back(day, &record);
     }
   }
   std::stable_sort(newest.begin(), newest.end(), [](const auto& a, const auto& b) {

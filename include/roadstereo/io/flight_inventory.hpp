@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,10 +24,12 @@ struct RoadDamage {
   std::int64_t frame = 0;  ///< index of the best frame: not cut by the border if possible, then smallest error
   std::string frame_name;
   double time_s = FlightFrame::unknown;
-  Damage best;                                     ///< the measurement in that frame
-  std::optional<GeoPosition> position;             ///< of its centroid
+  Damage best;                          ///< the measurement in that frame; area, length, volume and quantity of
+                                        ///< one that the border cuts in all frames are extended to what
+                                        ///< these show together, where their poses are known
+  std::optional<GeoPosition> position;  ///< of its centroid
   std::vector<std::array<double, 2>> outline_deg;  ///< (longitude, latitude), counterclockwise, not closed
-  double station_m = FlightFrame::unknown;         ///< distance along the track
+  double station_m = FlightFrame::unknown;         ///< distance along the track, of the damage itself
   std::string picture;                             ///< file in the folder of the results; empty: none
 };
 
@@ -78,6 +81,7 @@ class FlightInventory {
     std::optional<Place> place;
   };
   using Ids = std::vector<std::int64_t>;
+  using OutlineCells = std::set<std::array<int, 2>>;
   static std::optional<Place> place_of(const Damage& damage, const std::optional<FlightPose>& pose);
   std::int64_t seen_here(const Sighting& now, const FlightPose& pose, const Ids& taken) const;
   std::int64_t seen_in_picture(const Sighting& now, const Ids& taken) const;
@@ -97,7 +101,11 @@ class FlightInventory {
     Sighting last;
     std::optional<Place> best_place;  ///< in the best frame
     Agreement frames;
+    Damage measured;            ///< in the best frame
+    RigidTransform to_road{};   ///< from the axes of the first camera of the piece to the road of the first sighting
+    OutlineCells covered, own;  ///< cells there of all sightings, and of that in the best frame
   };
+  static void extend(const FlightFrame& frame, const Sighting& now, bool is_best, Known& known, Damage& best);
 
   double min_confidence_;
   std::vector<RoadDamage> damages_;

@@ -48,6 +48,7 @@ struct FlightReportInput {
   std::vector<std::pair<std::string, std::string>> properties;  ///< of the processing, for the appendix
   std::vector<std::string> notices;  ///< remarks at the top: rejected frames, an interrupted run
   FlightCurves curves;
+  std::int64_t inspected = 0;                    ///< frames in which damage was searched for
   std::vector<CaptionedPicture> thumbnails;      ///< in the order of the flight
   std::vector<ReportedDamage> damages;           ///< all, worst first
   std::vector<RoadDamage> candidates;            ///< all, worst first

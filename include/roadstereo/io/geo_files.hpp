@@ -28,7 +28,7 @@ struct GeoFrame {
   double height_m = std::numeric_limits<double>::quiet_NaN();
   double sigma_d_px = std::numeric_limits<double>::quiet_NaN();
   double valid_share = std::numeric_limits<double>::quiet_NaN();
-  std::optional<std::int64_t> damages;  ///< number of damages; empty: no road was found, so that damage is unknown
+  std::optional<std::int64_t> damages;  ///< number of damages; empty: damage could not be searched for
   std::string status;
 };
 

@@ -14,7 +14,10 @@ constexpr double mm = 1000;  // in a metre
 Damage fused(const RoadDamageRecord& record) {
   Damage damage = record.best.damage;
   if (damage.metrics) {
-    damage.metrics->area_m2 = record.area_m2;  // severity_text() tells a range only where it is known
+    // severity_text() tells a range only where these are known.
+    damage.metrics->area_m2 = record.area_m2;
+    damage.metrics->max_depth_m = record.max_depth_m;
+    damage.metrics->mean_depth_m = record.mean_depth_m;
     damage.metrics->severity = record.severity;
     damage.metrics->severity_probabilities = record.severity_probabilities;
   }

@@ -20,10 +20,16 @@ constexpr std::int64_t max_gap = 2;
 /// Overlap of two sightings of one damage, as a fraction of the smaller one.
 constexpr double min_overlap = 0.2;
 
-/// Severity as a number; the expected class where none has more than half of the probability.
+/// Severity as a number; the expected class where none has more than half of the probability. What has no classes, such
+/// as a bump, ranks as a depression of its depth.
 double severity_rank(const Damage& damage) {
+  static const SeverityScheme scheme = astm_d6433();
   const Severity severity = severity_of(damage);
   const auto rank = [](Severity of) { return static_cast<double>(of); };
+  if (severity == Severity::unknown && damage.metrics) {
+    const DamageMetrics& metrics = *damage.metrics;
+    return rank(scheme.find(Distress::depression)->severity(metrics.max_depth_m.value, metrics.diameter_m));
+  }
   if (severity != Severity::uncertain || !damage.metrics) return rank(severity);
   const SeverityProbabilities& of = damage.metrics->severity_probabilities;
   return of.minor * rank(Severity::minor) + of.low * rank(Severity::low) + of.medium * rank(Severity::medium) +
@@ -165,6 +171,29 @@ std::int64_t FlightInventory::seen_in_picture(const Sighting& now, const Ids& ta
   return best;
 }
 
+/// Extends what one frame shows of a damage to what all have shown.
+void FlightInventory::extend(const FlightFrame& frame, const Sighting& now, bool is_best, Known& known, Damage& best) {
+  if (!now.place) return;
+  if (known.covered.empty()) known.to_road = inverse(frame.pose->road_to_world);
+  Outline outline;
+  for (const auto& point : now.place->outline_m) {
+    const auto on_road = transform_point(known.to_road, point);
+    outline.push_back({on_road[0], on_road[1]});
+  }
+  const OutlineCells cells = cells_of(outline);
+  known.covered.insert(cells.begin(), cells.end());
+  if (is_best) known.own = cells;
+  best = known.measured;
+  if (!best.cut_by_border || known.own.empty()) return;
+  DamageMetrics& metrics = *best.metrics;
+  const double growth = static_cast<double>(known.covered.size()) / static_cast<double>(known.own.size());
+  for (Measurement* const measured : {&metrics.area_m2, &metrics.volume_m3}) {
+    *measured = {growth * measured->value, growth * measured->std_error};
+  }
+  metrics.length_m *= growth;  // it goes on as wide as it is
+  if (metrics.unit != DistressUnit::count) metrics.quantity *= growth;
+}
+
 /// Whether a damage was seen a few frames ago, and the image has not jumped since.
 bool FlightInventory::is_recent(const Sighting& last) const {
   return last.sequence >= uncut_from_ && sequence_ - last.sequence <= max_gap + 1;
@@ -217,10 +246,13 @@ std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
     ++on_road.sightings;
     on_road.last_frame = frame.index;
     const bool first_damage = !candidate && !frames.is_damage;
-    if (is_new || first_damage || (frames.is_damage != candidate && is_better(damage, on_road.best))) {
+    const bool is_best = is_new || first_damage || (frames.is_damage != candidate && is_better(damage, known.measured));
+    if (is_best) {
       measure(frame, damage, on_road);
+      known.measured = damage;
       known.best_place = now.place;
     }
+    if (!candidate) extend(frame, now, is_best, known, on_road.best);
     frames.is_damage = frames.is_damage || !candidate;
     frames.second = std::max(frames.second, std::min(frames.first, damage.confidence));
     frames.first = std::max(frames.first, damage.confidence);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/degrees.hpp"
 #include "io/drawing.hpp"
@@ -29,21 +30,20 @@ std::string jpeg_uri(const std::vector<std::uint8_t>& jpeg) {
 std::string notices_of(const FlightReportInput& input) {
   std::string html;
   for (const std::string& notice : input.notices) html += "<p class=\"notice\">" + escaped(notice) + "</p>\n";
-  const std::vector<double>& of_frames = input.curves.sigma_d_px;
-  const auto inspected =
-      std::count_if(of_frames.begin(), of_frames.end(), [](double sigma_d_px) { return std::isfinite(sigma_d_px); });
-  const auto frames = static_cast<std::ptrdiff_t>(of_frames.size());
+  const auto frames = static_cast<std::int64_t>(input.curves.time.size());
   const std::size_t in_map = input.map ? input.map->damages.size() : 0;
-  if (inspected == 0) {
+  if (input.inspected == 0) {
     html +=
-        "<p class=\"notice\"><strong>Not inspected.</strong> No road was found in any frame, so damage could not be "
-        "searched for; frames.csv has the reasons.</p>";
+        "<p class=\"notice\"><strong>Not inspected.</strong> Damage could not be searched for in any frame; frames.csv "
+        "has "
+        "the reasons.</p>";
   } else if (input.damages.empty() && in_map > 0) {
     html += "<p class=\"notice\"><strong>No damage found in single frames.</strong> Their map shows " +
             std::to_string(in_map) + ": see \"Damages on the map\".</p>";
   } else if (input.damages.empty()) {
-    const std::string where =
-        inspected < frames ? " in " + std::to_string(inspected) + " of " + std::to_string(frames) + " frames" : "";
+    const std::string where = input.inspected < frames ? " in " + std::to_string(input.inspected) + " of " +
+                                                             std::to_string(frames) + " frames"
+                                                       : "";
     html += no_damage_notice(where, !input.candidates.empty());
   }
   if (!input.metric) {
@@ -74,10 +74,14 @@ ReportCell metric_cell(const RoadDamage& damage, const Figure& figure) {
   return figure(*damage.best.metrics);
 }
 
-ReportCell id_cell(const RoadDamage& damage) {
+/// Number of a damage: a link to its section, or else what links to the damage lead to.
+ReportCell id_cell(const RoadDamage& damage, bool has_section) {
   const std::string id = std::to_string(damage.id);
-  const std::string text = damage.candidate ? id : "<a href=\"#damage-" + id + "\">" + id + "</a>";
-  return {text, static_cast<double>(damage.id)};
+  const auto value = static_cast<double>(damage.id);
+  if (damage.candidate) return {id, value};
+  return {has_section ? "<a href=\"#damage-" + id + "\">" + id + "</a>"
+                      : "<span id=\"damage-" + id + "\">" + id + "</span>",
+          value};
 }
 
 std::string place_text(const GeoPosition& position) {
@@ -101,7 +105,12 @@ ReportCell quantity_cell(const RoadDamage& damage) {
 std::vector<Column> damage_columns_of(const FlightReportInput& input) {
   using D = RoadDamage;
   using M = DamageMetrics;
-  std::vector<Column> columns{{"#", "", id_cell}, {"Distress", "", [](const D& d) { return distress_cell(d.best); }}};
+  std::set<std::int64_t> with_section;
+  for (const ReportedDamage& reported : input.damages) {
+    if (!reported.section.empty()) with_section.insert(reported.damage.id);
+  }
+  std::vector<Column> columns{{"#", "", [with_section](const D& d) { return id_cell(d, with_section.contains(d.id)); }},
+                              {"Distress", "", [](const D& d) { return distress_cell(d.best); }}};
   if (input.metric) {
     columns.push_back({"Severity", "", [](const D& d) { return severity_cell(d.best); }});
     columns.push_back({"Depth", "mm", [](const D& d) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/degrees.hpp"
@@ -22,6 +23,23 @@ double median_of(const std::vector<const GeoFrame*>& frames, double GeoFrame::*m
   return values.empty() ? std::nan("") : upper_median(values);
 }
 
+double station_of(std::int64_t index, std::span<const GeoFrame> frames) {
+  const auto at = std::lower_bound(frames.begin(), frames.end(), index,
+                                   [](const GeoFrame& frame, std::int64_t of) { return frame.index < of; });
+  return at == frames.end() || at->index != index ? std::nan("") : at->station_m;
+}
+
+/// First and last station of a damage; both are that of its centroid unless the border cuts it in all frames: such a
+/// one goes on from where the first frame shows it to where the last does, at most for its length.
+std::array<double, 2> stations_of(const RoadDamage& damage, std::span<const GeoFrame> frames) {
+  const double ahead_m = damage.station_m - station_of(damage.frame, frames);
+  const double first_m = station_of(damage.first_frame, frames) + ahead_m;
+  const double last_m = station_of(damage.last_frame, frames) + ahead_m;
+  const Damage& best = damage.best;
+  if (!best.cut_by_border || !best.metrics || !(first_m <= last_m)) return {damage.station_m, damage.station_m};
+  return {first_m, std::min(last_m, first_m + best.metrics->length_m)};
+}
+
 }  // namespace
 
 std::vector<RoadSegment> road_segments(std::span<const GeoFrame> frames, std::span<const RoadDamage> damages,
@@ -37,20 +55,27 @@ std::vector<RoadSegment> road_segments(std::span<const GeoFrame> frames, std::sp
          " such");
   }
   const auto index_of = [length_m](double station_m) { return static_cast<std::size_t>(station_m / length_m); };
-  const auto is_on_road = [end_m](double station_m) { return station_m >= 0 && station_m <= end_m; };
   const std::size_t count = index_of(end_m) + 1;
+  const auto is_on_road = [end_m](double station_m) { return station_m >= 0 && station_m <= end_m; };
+  // The camera may see road ahead of its last position, or behind its first one.
+  const auto segment_at = [&](double station_m) { return index_of(std::clamp(station_m, 0.0, end_m)); };
   std::vector<RoadSegment> segments(count);
   std::vector<std::vector<const GeoFrame*>> members(count);
   std::vector<const RoadDamage*> worst(count);
   for (const GeoFrame& frame : frames) {
-    if (is_on_road(frame.station_m)) members[index_of(frame.station_m)].push_back(&frame);
+    if (is_on_road(frame.station_m)) members[segment_at(frame.station_m)].push_back(&frame);
   }
   for (const RoadDamage& damage : damages) {
-    if (damage.candidate || !is_on_road(damage.station_m)) continue;
-    const std::size_t i = index_of(damage.station_m);
-    ++segments[i].damages;
-    if (damage.best.metrics) segments[i].area_m2 += damage.best.metrics->area_m2.value;
-    if (worst[i] == nullptr || is_worse(damage, *worst[i])) worst[i] = &damage;
+    if (damage.candidate || !is_on_road(station_of(damage.frame, frames))) continue;
+    const auto [first_m, last_m] = stations_of(damage, frames);
+    const std::size_t first = segment_at(first_m), last = segment_at(last_m);
+    for (std::size_t i = first; i <= last; ++i) {
+      ++segments[i].damages;
+      if (damage.best.metrics) {
+        segments[i].area_m2 += damage.best.metrics->area_m2.value / static_cast<double>(last - first + 1);
+      }
+      if (worst[i] == nullptr || is_worse(damage, *worst[i])) worst[i] = &damage;
+    }
   }
   for (std::size_t i = 0; i < count; ++i) {
     RoadSegment& segment = segments[i];
@@ -58,7 +83,7 @@ std::vector<RoadSegment> road_segments(std::span<const GeoFrame> frames, std::sp
     segment.to_m = std::min(segment.from_m + length_m, std::max(end_m, segment.from_m));
     segment.frames = static_cast<std::int64_t>(members[i].size());
     segment.inspected = std::count_if(members[i].begin(), members[i].end(),
-                                      [](const GeoFrame* frame) { return std::isfinite(frame->sigma_d_px); });
+                                      [](const GeoFrame* frame) { return frame->damages.has_value(); });
     segment.worst = worst[i] == nullptr ? 0 : worst[i]->id;
     segment.roll_rad = median_of(members[i], &GeoFrame::roll_rad);
     segment.height_m = median_of(members[i], &GeoFrame::height_m);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,7 +30,7 @@ template <class Row>
 struct ReportColumn {
   std::string title;
   std::string unit;
-  ReportCell (*cell)(const Row& row);
+  std::function<ReportCell(const Row& row)> cell;
 };
 
 /// Header cell of a column with its sort button.

@@ -92,7 +92,8 @@ std::string profile_svg(const CrossSection& section, const Damage& damage, const
   fields["road"] = coordinate_text(y.coordinate(0));
   fields["deepest"] = deepest_mark(section, damage, x, y);
   fields["kind"] = name_of(damage.kind);
-  fields["x_label"] = section.metric ? std::string("along the road, ") + (metres ? "m" : "mm") : "along the image, px";
+  fields["x_label"] =
+      section.metric ? std::string("along the section, ") + (metres ? "m" : "mm") : "along the image, px";
   fields["y_label"] = metric_depth ? "depth, mm" : "depth, px";
   return fill(templates::profile, fields);
 }

@@ -139,6 +139,31 @@ TEST(FlightInventory, KnowsDamageByItsPlace) {
   EXPECT_EQ(inventory.damages()[1].sightings, 4);
 }
 
+// A rut 0.5 m wide that the border cuts in all frames: each shows 4 m of it, ten of them, 1 m apart, 13 m.
+TEST(FlightInventory, DamageLongerThanViewHasAreaOfAll) {
+  FlightInventory inventory;
+  for (int i = 0; i < 10; ++i) {
+    FlightFrame frame = frame_along(i, i, {0});
+    Damage& rut = frame.damages[0];
+    rut.cut_by_border = true;
+    DamageMetrics& metrics = *rut.metrics;
+    metrics.distress = Distress::rut;
+    metrics.outline_m = {{-0.25, 3}, {0.25, 3}, {0.25, 7}, {-0.25, 7}};
+    metrics.area_m2 = {2, 0.1};
+    metrics.volume_m3 = {0.02, 0.002};
+    metrics.length_m = 4;
+    metrics.unit = DistressUnit::square_metre;
+    metrics.quantity = 2;
+    EXPECT_EQ(inventory.add(frame), std::vector<std::int64_t>{1});
+  }
+  const DamageMetrics& metrics = *inventory.damages()[0].best.metrics;
+  EXPECT_NEAR(metrics.area_m2.value, 6.5, 0.1);
+  EXPECT_NEAR(metrics.area_m2.std_error, 0.325, 0.005);
+  EXPECT_NEAR(metrics.volume_m3.value, 0.065, 0.001);
+  EXPECT_NEAR(metrics.length_m, 13, 0.2);
+  EXPECT_NEAR(metrics.quantity, 6.5, 0.1);
+}
+
 // Where no link connects two pieces, the pictures decide; boxes there do not overlap.
 TEST(FlightInventory, PlacesOfOtherPiecesAreUnrelated) {
   FlightInventory inventory;
@@ -171,6 +196,19 @@ TEST(FlightInventory, UncertainSeverityRanksAsExpectedClass) {
   grade(0, Severity::minor, {.minor = 1, .low = 0, .medium = 0, .high = 0});
   grade(1, Severity::uncertain, {.minor = 0, .low = 0, .medium = 0.5, .high = 0.5});
   grade(2, Severity::medium, {.minor = 0, .low = 0, .medium = 1, .high = 0});
+  inventory.add(frame_of(0, damages));
+  std::vector<std::int64_t> order;
+  for (const RoadDamage& damage : worst_first(inventory.damages(), false)) order.push_back(damage.id);
+  EXPECT_EQ(order, (std::vector<std::int64_t>{2, 3, 1}));
+}
+
+// A bump, which the standard has no depths for, of 110 mm is worse than a minor and a medium hollow.
+TEST(FlightInventory, DamageWithoutClassesRanksByDepth) {
+  FlightInventory inventory;
+  std::vector<Damage> damages{pothole(100, 100, 0.008), pothole(300, 100, 0.11), pothole(500, 100, 0.03)};
+  damages[0].metrics->severity = Severity::minor;
+  damages[1].kind = DamageKind::protrusion;
+  damages[1].metrics->severity = Severity::unknown;
   inventory.add(frame_of(0, damages));
   std::vector<std::int64_t> order;
   for (const RoadDamage& damage : worst_first(inventory.damages(), false)) order.push_back(damage.id);
