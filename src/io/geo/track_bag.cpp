@@ -36,6 +36,7 @@ std::vector<TrackLine> read_track_bag(const std::string& path) {
   std::vector<TrackLine> points;
   std::size_t number = 0;
   while (const std::optional<LoggedMessage> message = log->next()) {
+    if (!message->error.empty()) continue;  // a gap in the track
     ++number;
     const SatelliteFix fix = read_satellite_fix(path + ": " + topic.name, message->bytes, topic.format);
     if (!fix.valid) continue;

@@ -44,7 +44,16 @@ class McapLog final : public MessageLog {
       const std::optional<McapRecord> record = next_of_file();
       if (!record || record->opcode == McapOpcode::data_end) return std::nullopt;
       if (record->opcode == McapOpcode::chunk) {
-        chunk_ = read_chunk(path_, record->content);
+        rest_ = {};
+        try {
+          chunk_ = read_chunk(path_, record->content);
+        } catch (const SystemError&) {
+          throw;
+        } catch (const Error& error) {  // the next one may be sound
+          LoggedMessage lost;
+          lost.error = error.what();
+          return lost;
+        }
         rest_ = chunk_;
       } else if (record->opcode == McapOpcode::message) {
         if (std::optional<LoggedMessage> message = selected_message(record->content)) return message;
@@ -53,11 +62,12 @@ class McapLog final : public MessageLog {
   }
 
  private:
-  /// With an index only chunks that have a selected channel are read.
+  /// With an index only chunks that have a selected channel, or do not tell, are read.
   std::optional<McapRecord> next_of_file() {
     const auto has_selected = [this](const McapChunkIndex& chunk) {
-      return std::any_of(selected_.begin(), selected_.end(),
-                         [&](std::uint16_t channel) { return chunk.channels.contains(channel); });
+      return chunk.channels.empty() || std::any_of(selected_.begin(), selected_.end(), [&](std::uint16_t channel) {
+               return chunk.channels.contains(channel);
+             });
     };
     if (!chunks_.empty()) {
       while (next_chunk_ < chunks_.size() && !has_selected(chunks_[next_chunk_])) ++next_chunk_;
@@ -143,7 +153,13 @@ class McapLog final : public MessageLog {
         count(*record);
         continue;
       }
-      chunk_ = read_chunk(path_, record->content);
+      try {
+        chunk_ = read_chunk(path_, record->content);
+      } catch (const SystemError&) {
+        throw;
+      } catch (const Error&) {  // next() tells it
+        continue;
+      }
       for (std::span<const std::uint8_t> rest = chunk_; const auto inner = next_record(rest);) count(*inner);
     }
     cut_off_ = true;

@@ -17,6 +17,7 @@ struct LoggedMessage {
   std::string topic;
   std::int64_t received_ns = 0;  ///< since 1970
   std::vector<std::uint8_t> bytes;
+  std::string error{};  ///< why this message, or a chunk of messages, cannot be read; empty if it can
 };
 
 /// A recording. Messages are read one by one, about in the order of reception; memory use is that of a chunk.
@@ -33,7 +34,8 @@ class MessageLog {
   virtual const std::vector<BagTopic>& topics() const = 0;
   /// Starts anew with the messages of these topics.
   virtual void select(const std::vector<std::string>& topics) = 0;
-  /// Returns the next selected message, or nullopt at the end. Throws Error naming the file if it is damaged.
+  /// Returns the next selected message, or nullopt at the end. Throws Error naming the file if it is damaged so that
+  /// nothing more can be read.
   virtual std::optional<LoggedMessage> next() = 0;
 };
 

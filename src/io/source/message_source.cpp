@@ -29,7 +29,7 @@ class MessageSource final : public FrameSource {
     const std::optional<MatchedMessages> matched = next_messages();
     if (!matched) return std::nullopt;
     SourcePair pair = numbered_pair(index_++, rate_hz_);
-    if (rate_hz_ == 0) {
+    if (rate_hz_ == 0 && (matched->left || matched->right)) {
       pair.time_s = 1e-9 * static_cast<double>((matched->left ? matched->left : matched->right)->stamp_ns);
     }
     pair.error = matched->error;
@@ -64,8 +64,13 @@ class MessageSource final : public FrameSource {
     for (const BagTopic& topic : log_->topics()) {
       if (topic.name != name || topic.type != "sensor_msgs/CameraInfo") continue;
       log_->select({name});
-      const std::optional<LoggedMessage> message = log_->next();
-      if (!message) return std::nullopt;
+      std::optional<LoggedMessage> message = log_->next();
+      std::string lost;
+      for (; message && !message->error.empty(); message = log_->next()) lost = message->error;
+      if (!message) {
+        if (!lost.empty()) info_error_ = lost;
+        return std::nullopt;
+      }
       CameraInfo camera;
       try {
         camera = read_camera_info(file_ + ": " + name, message->bytes, topic.format);
@@ -90,22 +95,29 @@ class MessageSource final : public FrameSource {
     while (true) {
       if (std::optional<MatchedMessages> matched = pairs_.next()) return matched;
       if (finished_) return std::nullopt;
-      read_message();
+      std::optional<LoggedMessage> logged = log_->next();
+      if (!logged) {
+        finished_ = true;
+        pairs_.finish();
+        continue;
+      }
+      if (logged->error.empty()) add(*logged);
+      if (!logged->error.empty()) return MatchedMessages{{}, {}, logged->error};
     }
   }
 
-  void read_message() {
-    std::optional<LoggedMessage> logged = log_->next();
-    if (!logged) {
-      finished_ = true;
-      pairs_.finish();
+  /// Adds a message to those that wait for their partners. Sets its error if it ends before its time stamp.
+  void add(LoggedMessage& logged) {
+    const bool is_left = logged.topic == left_.name;
+    TimedMessage message;
+    message.bytes = std::move(logged.bytes);
+    try {
+      message.stamp_ns = stamp_ns(file_ + ": " + logged.topic, message.bytes, (is_left ? left_ : right_).format);
+    } catch (const Error& error) {
+      logged.error = error.what();
       return;
     }
-    const bool is_left = logged->topic == left_.name;
-    TimedMessage message;
-    message.bytes = std::move(logged->bytes);
-    message.stamp_ns = stamp_ns(file_ + ": " + logged->topic, message.bytes, (is_left ? left_ : right_).format);
-    if (message.stamp_ns == 0) message.stamp_ns = logged->received_ns;
+    if (message.stamp_ns == 0) message.stamp_ns = logged.received_ns;
     if (is_left) {
       pairs_.add_left(std::move(message));
     } else {

@@ -104,7 +104,14 @@ class Rosbag2Folder final : public MessageLog {
   }
 
   LoggedMessage unpacked(LoggedMessage message) const {
-    if (packed_messages_) message.bytes = decompress_zstd(folder_ + ": " + message.topic, message.bytes);
+    if (!packed_messages_ || !message.error.empty()) return message;
+    try {
+      message.bytes = decompress_zstd(folder_ + ": " + message.topic, message.bytes);
+    } catch (const SystemError&) {
+      throw;
+    } catch (const Error& error) {
+      message.error = error.what();
+    }
     return message;
   }
 

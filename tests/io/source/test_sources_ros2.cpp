@@ -1,6 +1,8 @@
 // Bags of ROS 2 made by other encoders: make_ros2_bags.mjs, whose head says what is in them.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -35,8 +37,10 @@ class Ros2Bag : public testing::Test {
 std::string message_of(const std::string& path) {
   try {
     const auto source = open_source({path});
-    while (source->next()) {
+    while (const std::optional<SourcePair> pair = source->next()) {
+      if (!pair->error.empty()) return pair->error;
     }
+    (void)source->calibration();
   } catch (const Error& error) {
     return error.what();
   }
@@ -179,16 +183,75 @@ TEST_F(Ros2Bag, DamageIsASentence) {
   EXPECT_NE(message_of(folder_ / "bag").find("rosbag2_0.db3: the file does not exist"), std::string::npos);
 }
 
+/// Where the records of an MCAP file that are chunks begin and end.
+std::vector<std::array<std::size_t, 2>> chunks_of(const std::vector<char>& bytes) {
+  constexpr std::size_t head = 9, magic = 8;
+  constexpr char chunk_opcode = 6;
+  std::vector<std::array<std::size_t, 2>> chunks;
+  for (std::size_t at = magic; at + head < bytes.size();) {
+    std::uint64_t length = 0;
+    std::memcpy(&length, bytes.data() + at + 1, sizeof length);
+    const std::size_t end = at + head + static_cast<std::size_t>(length);
+    if (bytes[at] == chunk_opcode) chunks.push_back({at, end});
+    at = end;
+  }
+  return chunks;
+}
+
+// A chunk: opcode, length, two times, then the size of what is compressed.
 TEST_F(Ros2Bag, LyingChunkSizeIsRejected) {
   std::vector<char> bytes = bytes_of(data / "zstd.mcap");
-  // The chunk record: opcode 6, length, two times, then the size of what is compressed. The first one follows the
-  // header.
-  const std::size_t chunk = 8 + 9 + static_cast<std::size_t>(static_cast<unsigned char>(bytes[9]));
-  ASSERT_EQ(bytes[chunk], 6);
-  bytes[chunk + 9 + 16] = static_cast<char>(bytes[chunk + 9 + 16] + 1);
+  for (const auto& chunk : chunks_of(bytes)) ++bytes[chunk[0] + 9 + 16];
   write(folder_ / "lies.mcap", bytes);
   EXPECT_NE(message_of(folder_ / "lies.mcap").find("its header says"), std::string::npos)
       << message_of(folder_ / "lies.mcap");
+}
+
+// One bit of the last chunk: the pairs of the others remain, and one is told to be lost.
+TEST_F(Ros2Bag, DamagedChunkCostsItsImagesOnly) {
+  constexpr std::size_t before_end = 40;
+  std::vector<char> bytes = bytes_of(data / "zstd.mcap");
+  const auto chunks = chunks_of(bytes);
+  ASSERT_GT(chunks.size(), 1U);
+  char& damaged = bytes[chunks.back()[1] - before_end];
+  damaged = static_cast<char>(damaged ^ 1);
+  write(folder_ / "damaged.mcap", bytes);
+  int sound = 0, lost = 0;
+  const auto source = open_source({folder_ / "damaged.mcap"});
+  while (const std::optional<SourcePair> pair = source->next()) ++(pair->error.empty() ? sound : lost);
+  EXPECT_GT(sound, 0);
+  EXPECT_GT(lost, 0);
+}
+
+// The index of a chunk may leave out which messages the chunk has: opcode 8, four numbers, then a map with its size.
+TEST_F(Ros2Bag, ChunkIndexNeedNotListMessages) {
+  constexpr std::size_t head = 9, before_map = 4 * 8;
+  const std::vector<char> bytes = bytes_of(data / "zstd.mcap");
+  std::vector<char> without(bytes.begin(), bytes.begin() + 8);
+  std::size_t at = 8, indexes = 0;
+  while (at + head < bytes.size()) {
+    std::uint64_t length = 0;
+    std::memcpy(&length, bytes.data() + at + 1, sizeof length);
+    const auto record = bytes.begin() + static_cast<std::ptrdiff_t>(at);
+    const std::size_t end = at + head + static_cast<std::size_t>(length);
+    without.insert(without.end(), record, bytes.begin() + static_cast<std::ptrdiff_t>(end));
+    if (bytes[at] == 8) {
+      ++indexes;
+      std::uint32_t map_bytes = 0;
+      std::memcpy(&map_bytes, bytes.data() + at + head + before_map, sizeof map_bytes);
+      const auto copy = without.end() - static_cast<std::ptrdiff_t>(end - at);
+      const auto map = copy + static_cast<std::ptrdiff_t>(head + before_map);
+      length -= map_bytes;
+      std::memcpy(&copy[1], &length, sizeof length);
+      std::fill_n(map, sizeof map_bytes, char{0});
+      without.erase(map + sizeof map_bytes, map + sizeof map_bytes + map_bytes);
+    }
+    at = end;
+  }
+  without.insert(without.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end());
+  ASSERT_GT(indexes, 0U);
+  write(folder_ / "short.mcap", without);
+  expect_three_pairs(folder_ / "short.mcap", "MCAP file");
 }
 
 TEST_F(Ros2Bag, FixesAreTrack) {
