@@ -22,7 +22,7 @@ enum class Scope {
 
 /// Options of the perspective transformation, section 3.1.
 struct PerspectiveOptions {
-  bool enabled = true;  ///< false: no shift, plain stereo over the full range
+  bool enabled = true;  ///< false: no shift, plain stereo up to W/4
   ShiftPrecision shift = ShiftPrecision::sub_pixel;
   Scope scope = Scope::road;
   double max_damage_depth_m = 0.10;  ///< deepest measurable damage, metres, above 0, at most 2; without a calibration
@@ -38,10 +38,10 @@ struct PerspectiveOptions {
 };
 
 /// Chooses δp and D: with a calibration from the deepest damage and the highest bump at the road's distance, without
-/// one from the residuals of the correspondences; for the scene from the largest disparity, too. Without a reliable
-/// model there is no shift and the full range is searched. Throws Error if an option is out of range, if the image, of
-/// width × height pixels, is not one of 32×32 … 8192×8192, and if the given δp is not less than the number of
-/// disparities, which the width of the image bounds.
+/// one from the residuals of the correspondences; for the scene from the largest disparity, too, at most W/4. Without a
+/// reliable model there is no shift, and all disparities up to that are searched. Throws Error if an option is out of
+/// range, if the image, of width × height pixels, is not one of 32×32 … 8192×8192, and if the given δp is not less than
+/// the number of disparities, which the width of the image bounds.
 PerspectiveShift plan_perspective(const RoadModelEstimate& road, const std::optional<StereoCalibration>& calibration,
                                   int width, int height, const PerspectiveOptions& options);
 

@@ -92,8 +92,7 @@ bool is_clear(const MapDamage& found, double min_confidence) {
   return !found.damage.cut_by_border && found.damage.confidence >= min_confidence;
 }
 
-/// The clear findings of the map first, since its noise is least, then whole sightings before cut ones, the most
-/// confident first, then the rest of the map.
+/// The map first, since its noise is least, then whole sightings before cut ones; the most confident first.
 std::vector<Group> group_findings(std::span<const DamageSighting> sightings, std::span<const MapDamage> in_map,
                                   double min_confidence) {
   const auto rank = [](const MapDamage& found) {
@@ -106,19 +105,13 @@ std::vector<Group> group_findings(std::span<const DamageSighting> sightings, std
   for (const DamageSighting& sighting : sightings) ordered.push_back(&sighting);
   std::stable_sort(ordered.begin(), ordered.end(), [&](auto* a, auto* b) { return rank(a->found) < rank(b->found); });
   std::vector<Group> groups;
-  const auto first_doubtful = std::stable_partition(
-      findings.begin(), findings.end(), [&](const MapDamage* found) { return is_clear(*found, min_confidence); });
-  const auto join_map = [&](auto first, auto last) {
-    for (; first != last; ++first) {
-      Group& group = join_group(**first, min_confidence, groups);
-      if (group.in_map == nullptr) group.in_map = *first;
-    }
-  };
-  join_map(findings.begin(), first_doubtful);
+  for (const MapDamage* found : findings) {
+    Group& group = join_group(*found, min_confidence, groups);
+    if (group.in_map == nullptr) group.in_map = found;
+  }
   for (const DamageSighting* sighting : ordered) {
     join_group(sighting->found, min_confidence, groups).sightings.push_back(sighting);
   }
-  join_map(first_doubtful, findings.end());
   join_grown(groups);
   return groups;
 }

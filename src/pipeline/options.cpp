@@ -63,7 +63,7 @@ void visit_options(Options& o, Visitor visit) {
   visit("road_model.weak_evidence", o.road_model.weak_evidence,
         "evidence for the plane, per pixel of its part of the picture, below which the road is weak");
   visit("road_model.verify_tolerance_px", o.road_model.verify_tolerance_px,
-        "largest residual of a tracked road model, pixels");
+        "largest residual of a tracked road model, pixels of the image shrunk to less than 1920 columns");
 
   visit("road_model.height_m", o.road_model.height_m,
         "expected height of the camera, metres (needs a calibration); 0: unknown");

@@ -191,8 +191,8 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
       roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, left_out, last);
   if (!result.road.has_road()) {
     result.warnings.push_back(format_message("no-road: no road was found (", result.road.reason,
-                                             "): the pair was matched over the full disparity range, without "
-                                             "perspective transformation"));
+                                             "): the pair was matched over all disparities up to a quarter "
+                                             "of the width, without perspective transformation"));
   } else if (result.road.status == RoadStatus::weak) {
     std::string reason = result.road.reason;
     if (reason.empty()) {

@@ -118,7 +118,7 @@ RoadModelEstimate assess_tracked_road(const PlaneFitStatistics& around, const Pl
     estimate.reason =
         format_message("the last frame's road explains ", 100 * estimate.inlier_share,
                        " % of the textured samples where it should be seen, less than ", 100 * least, " %");
-  } else if (estimate.residual_px > options.verify_tolerance_px) {
+  } else if (estimate.residual_px > options.verify_tolerance_px * fine_factor(width)) {
     estimate.reason =
         format_message("the residual of the last frame's road in this frame is ", estimate.residual_px, " px");
   } else if (moved > max_step_px(range_px, width)) {
