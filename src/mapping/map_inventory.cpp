@@ -87,11 +87,6 @@ void join_grown(std::vector<Group>& groups) {
   }
 }
 
-/// Whether a finding is whole and likely enough to tell what is there.
-bool is_clear(const MapDamage& found, double min_confidence) {
-  return !found.damage.cut_by_border && found.damage.confidence >= min_confidence;
-}
-
 /// The map first, since its noise is least, then whole sightings before cut ones; the most confident first.
 std::vector<Group> group_findings(std::span<const DamageSighting> sightings, std::span<const MapDamage> in_map,
                                   double min_confidence) {
@@ -210,10 +205,9 @@ int views_of(const MapCells& footprint, const RoadMap& map) {
   return views.empty() ? 0 : static_cast<int>(upper_median(views));
 }
 
-/// Best finding of a group: of the map unless a sighting alone is clear, else the sighting that is whole and has the
-/// smallest error.
-const MapDamage& best_of(const Group& group, bool any_clear, double min_confidence) {
-  if (group.in_map != nullptr && (!any_clear || is_clear(*group.in_map, min_confidence))) return *group.in_map;
+/// Best finding of a group: of the map, else the sighting that is whole and has the smallest error.
+const MapDamage& best_of(const Group& group) {
+  if (group.in_map != nullptr) return *group.in_map;
   const auto best = std::min_element(group.sightings.begin(), group.sightings.end(), [](auto* a, auto* b) {
     const Damage &one = a->found.damage, &other = b->found.damage;
     return std::tuple(one.cut_by_border, one.metrics->max_depth_m.std_error) <
@@ -263,10 +257,11 @@ void require_metrics(const MapDamage& found) {
 RoadDamageRecord record_of(const Group& group, const RoadMap& map, const DamageOptions& options) {
   const double view_factor = map.view_factor();
   // What is hardly seen is hardly measured: such sightings count only where there are no others.
-  const bool any_confident = std::any_of(group.sightings.begin(), group.sightings.end(),
-                                         [&](auto* one) { return is_clear(one->found, options.min_confidence); });
+  const bool any_confident = std::any_of(group.sightings.begin(), group.sightings.end(), [&](auto* one) {
+    return one->found.damage.confidence >= options.min_confidence && !one->found.damage.cut_by_border;
+  });
   RoadDamageRecord record;
-  record.best = best_of(group, any_confident, options.min_confidence);
+  record.best = best_of(group);
   record.best.footprint = group.footprint;
   record.found_in_map = group.in_map != nullptr;
   record.views = views_of(group.footprint, map);

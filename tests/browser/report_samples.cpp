@@ -117,11 +117,14 @@ void write_flight(const std::filesystem::path& folder, const synth::SyntheticPai
   input.metric = true;
   input.curves.in_seconds = true;
   std::vector<io::GeoFrame> frames(141);
+  input.inspected = static_cast<std::int64_t>(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const double way = 0.5 * static_cast<double>(i);
+    frames[i].index = static_cast<std::int64_t>(i);
     frames[i].station_m = way;
     frames[i].roll_rad = 0.004 * std::sin(way / 9);
     frames[i].sigma_d_px = 0.06;
+    frames[i].damages = 0;
     frames[i].height_m = 2.6 + 0.05 * std::cos(way / 7);
     input.track_deg.push_back({9.05 + way / 80000, 48.52 + 6e-5 * std::sin(way / 30)});
     input.curves.time.push_back(0.1 * static_cast<double>(i));

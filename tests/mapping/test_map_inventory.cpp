@@ -157,17 +157,6 @@ TEST_F(JoinDamage, FramesTellDistress) {
   EXPECT_EQ(alone[0].best.damage.metrics->distress, Distress::depression);
 }
 
-// A pothole that frames see whole, in a gentle region of the map that is hardly damage: its place and shape are theirs.
-TEST_F(JoinDamage, ClearSightingIsBetterThanDoubtfulFindingOfMap) {
-  std::vector<DamageSighting> sightings;
-  for (int frame = 0; frame < 4; ++frame) sightings.push_back({0, frame, finding(10, 10, 10, 0.05, 0.004, 0.9)});
-  for (const double confidence : {0.02, 0.95}) {
-    const auto records = join_damage(sightings, {{finding(0, 0, 50, 0.012, 0.002, confidence)}}, map_, {});
-    ASSERT_EQ(records.size(), 1U);
-    EXPECT_NEAR(records[0].best.at_m[0], (confidence < 0.5 ? 15 : 25) * footprint_m, 1e-9);
-  }
-}
-
 // Frames whose depths are not to be trusted have withheld the severity.
 TEST_F(JoinDamage, WithheldSeverityIsWithheld) {
   MapDamage graded = finding(0, 0, 10, 0.05, 0.002, 0.9);

@@ -208,6 +208,7 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
   input.properties = {{"Frames", "3"}};
   input.notices = {"1 of 3 frames have no result"};
   input.curves = {{0, 1, 2}, true, {1, FlightFrame::unknown, 2}, {3, 3, 3}, {0.1, 0.2, 0.1}};
+  input.inspected = 3;
   input.thumbnails = {{"first", frame_thumbnail(left.view(), map)}};
   input.damages.resize(1);
   RoadDamage& known = input.damages[0].damage;
@@ -237,6 +238,9 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
   // 0.002° of longitude at 48.5° are 147.4 m on 628 px: a bar of 20 m is at most a fifth of 720 px (33.8 m), 85.2 px.
   EXPECT_NE(html.find("h85.2\"/>"), std::string::npos);
   EXPECT_NE(html.find(">20 m<"), std::string::npos);
+  EXPECT_EQ(html.find("<span id=\"damage-7\""), std::string::npos);
+  input.damages[0].section.clear();
+  EXPECT_NE(flight_report(input).find("<span id=\"damage-7\""), std::string::npos) << "what links lead to";
   input.damages.clear();
   input.candidates.clear();
   input.metric = false;
@@ -251,7 +255,7 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
   EXPECT_EQ(in_map.find("No damage found.</strong>"), std::string::npos);
   EXPECT_NE(in_map.find("Their map shows 2"), std::string::npos);
   input.map.reset();
-  input.curves.sigma_d_px.assign(3, FlightFrame::unknown);
+  input.inspected = 0;
   const std::string nothing = flight_report(input);
   EXPECT_EQ(nothing.find("No damage found"), std::string::npos);
   EXPECT_NE(nothing.find("Not inspected"), std::string::npos);
