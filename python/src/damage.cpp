@@ -10,6 +10,7 @@
 #include "option_values.hpp"
 #include "processed_frame.hpp"
 #include "record.hpp"
+#include "roadstereo/health.hpp"
 
 namespace roadstereo::python {
 namespace {
@@ -157,6 +158,7 @@ std::unique_ptr<DamageMap> find_damage_of(const ProcessedFrame& frame, const py:
   const py::gil_scoped_release release;
   all.validate();
   find_damage(frame.result, frame.calibration, all.damage, all.threads, *map);
+  withhold_severity(measure_health(frame.result, *map, frame.calibration, all.damage, all.threads), *map);
   return map;
 }
 
@@ -169,7 +171,8 @@ void bind_damage(py::module_& module) {
   bind_damage_map(module);
   module.def(
       "find_damage", &find_damage_of, py::arg("result"), py::arg("options") = py::none(),
-      "Find and measure the regions that differ from the road's surface; none without a road.\n\n"
+      "Find and measure the regions that differ from the road's surface; none without a road. Where the images show\n"
+      "that depths cannot be trusted, such as rows that disagree, severities are unknown.\n\n"
       "The options are those of the pipeline, unless others are given: options={\"damage.min_confidence\": 0.3}.\n"
       "Raises Error when hardly any disparity lies on a road, and for bad options.");
 }
