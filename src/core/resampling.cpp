@@ -26,7 +26,9 @@ void resample_rows(const std::vector<SplineImage>& channels, SplinePlaces& place
         channels[c].sample(places, values.data());
         Sample* sample = samples + c;
         for (int k = 0; k < count; ++k, sample += channels.size()) {
-          *sample = static_cast<Sample>(static_cast<int>(values[static_cast<std::size_t>(k)] + 0.5F));  // not negative
+          // Not negative, and lround is a call for every pixel.
+          const float rounded = values[static_cast<std::size_t>(k)] + 0.5F;
+          *sample = static_cast<Sample>(static_cast<int>(rounded));
         }
       }
       samples += static_cast<std::size_t>(count) * channels.size();
@@ -39,6 +41,7 @@ void resample_rows(const std::vector<SplineImage>& channels, SplinePlaces& place
 Frame resample(const FrameView& frame, ImageView<const float> x, ImageView<const float> y, int threads) {
   constexpr int rows_per_band = 8;
   std::vector<SplineImage> channels;
+  channels.reserve(static_cast<std::size_t>(channel_count(frame.order)));
   for (int c = 0; c < channel_count(frame.order); ++c) channels.emplace_back(frame, c, threads);
   const bool is_narrow = frame.sample == SampleType::u8;
   Frame result{{}, x.width(), x.height(), frame.sample, frame.order};
