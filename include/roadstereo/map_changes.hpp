@@ -33,7 +33,7 @@ struct DamageChange {
 bool measures(const RoadMap& map, const MapCells& footprint);
 
 /// Returns whether a later map knows better than an earlier record: it has a record of the same damage, or heights in
-/// the footprint by which the damage is repaired.
+/// the footprint by which it is gone rather than still there, filled by more than half of its mean depth.
 bool is_superseded(const RoadDamageRecord& before, const RoadMap& map_before, std::span<const RoadDamageRecord> after,
                    const RoadMap& map_after);
 

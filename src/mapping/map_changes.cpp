@@ -147,10 +147,6 @@ std::optional<Measurement> height_change(const RoadDamageRecord& record, const R
   return PlacePair(record.best.footprint, before, after).change();
 }
 
-bool is_repaired(const RoadDamageRecord& record, const std::optional<Measurement>& height_change) {
-  return height_change && growth(record.best.damage.kind, *height_change) < 0;
-}
-
 }  // namespace
 
 const char* name_of(DamageChangeKind kind) {
@@ -173,7 +169,12 @@ bool measures(const RoadMap& map, const MapCells& footprint) {
 
 bool is_superseded(const RoadDamageRecord& before, const RoadMap& map_before, std::span<const RoadDamageRecord> after,
                    const RoadMap& map_after) {
-  return partner_of(before, after) || is_repaired(before, height_change(before, map_before, map_after));
+  if (partner_of(before, after)) return true;
+  const auto moved = height_change(before, map_before, map_after);
+  const double towards_road = !moved                                              ? 0
+                              : before.best.damage.kind == DamageKind::depression ? moved->value
+                                                                                  : -moved->value;
+  return moved && towards_road > 0.5 * before.mean_depth_m.value;
 }
 
 std::vector<DamageChange> compare_damage(std::span<const RoadDamageRecord> before, const RoadMap& map_before,
@@ -193,7 +194,7 @@ std::vector<DamageChange> compare_damage(std::span<const RoadDamageRecord> befor
   for (std::size_t k = 0; k < before.size(); ++k) {
     if (partner_of(before[k], after)) continue;
     const auto moved = height_change(before[k], map_before, map_after);
-    if (is_repaired(before[k], moved)) {
+    if (moved && growth(before[k].best.damage.kind, *moved) < 0) {
       changes.push_back({DamageChangeKind::repaired, k, std::nullopt, *moved});
     }
   }

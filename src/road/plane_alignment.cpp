@@ -10,13 +10,13 @@
 #include "core/scratch.hpp"
 #include "core/tukey.hpp"
 #include "road/downsampled_plane.hpp"
+#include "road/lucas_kanade/gauss_newton.hpp"
 #include "road/masked_blocks.hpp"
 
 namespace roadstereo {
 namespace {
 
 constexpr int half_block = 7, block_size = 2 * half_block + 1;
-constexpr double block_pixels = block_size * block_size;
 
 /// What a block says of the plane: its shift, pixels of the downsampled images, and that shift's variance.
 struct BlockShift {
@@ -62,39 +62,24 @@ class SmoothImage {
   ScratchVector<float> values_ = scratch_vector<float>();
 };
 
-/// Sums over a block of the left image L, the right one R along the plane, and its gradient G.
-struct BlockSums {
-  float l = 0, r = 0, g = 0, ll = 0, rr = 0, gg = 0, lr = 0, lg = 0, rg = 0;
-
-  void add(float left, float right, float gradient) {
-    l += left;
-    r += right;
-    g += gradient;
-    ll += left * left;
-    rr += right * right;
-    gg += gradient * gradient;
-    lr += left * right;
-    lg += left * gradient;
-    rg += right * gradient;
-  }
-};
-
-/// Regression of L on R and G: L = β(R − shift·G) + offset.
-void solve_block(const BlockSums& s, BlockShift& block) {
+/// Regression of L on T, the right image along the plane, and its gradient G: L = β(T − shift·G) + offset. The sums are
+/// those of T, G and R = L − T.
+void solve_block(const AlignmentSums<float>& s, BlockShift& block) {
   // The filter leaves the noise correlated: 1 / Σ w² of the binomial filter.
   constexpr double pixels_per_sample = 13.4, min_gain = 0.3;
-  constexpr double n = block_pixels, rounding = 1;  // the unit, 1/16 grey level
-  const double l = s.l, r = s.r, g = s.g;
-  const double ll = s.ll - l * l / n, rr = s.rr - r * r / n, gg = s.gg - g * g / n;
-  const double lr = s.lr - l * r / n, lg = s.lg - l * g / n, rg = s.rg - r * g / n;
-  const double determinant = rr * gg - rg * rg;
-  if (!(determinant > 1e-6 * rr * gg) || !(ll > n * rounding)) return;
-  const double gain = (lr * gg - lg * rg) / determinant, slope = (lg * rr - lr * rg) / determinant;
+  constexpr double rounding = 1;  // the unit, 1/16 grey level
+  const double n = s.n, t = s.t, g = s.g, r = s.r;
+  const double tt = s.tt - t * t / n, tg = s.tg - t * g / n, gg = s.gg - g * g / n;
+  const double tr = s.tr - t * r / n, gr = s.gr - g * r / n, rr = s.rr - r * r / n;
+  const double ll = tt + 2 * tr + rr, lt = tt + tr, lg = tg + gr;
+  const double determinant = tt * gg - tg * tg;
+  if (!(determinant > 1e-6 * tt * gg) || !(ll > n * rounding)) return;
+  const double gain = (lt * gg - lg * tg) / determinant, slope = (lg * tt - lt * tg) / determinant;
   if (!(gain > min_gain && gain < 1 / min_gain)) return;
-  const double left_over = std::max(n * rounding, ll - gain * lr - slope * lg);
+  const double left_over = std::max(n * rounding, ll - gain * lt - slope * lg);
   block.shift = -slope / gain;
-  block.variance = pixels_per_sample * left_over / n * rr / determinant / (gain * gain);
-  block.correlation = std::max(0.0, lr / std::sqrt(ll * rr));
+  block.variance = pixels_per_sample * left_over / n * tt / determinant / (gain * gain);
+  block.correlation = std::max(0.0, lt / std::sqrt(ll * tt));
 }
 
 class PlaneAlignment {
@@ -130,7 +115,7 @@ class PlaneAlignment {
     block.u = u;
     block.v = v;
     if (masked_.contains(u, v, half_block, half_block) || !is_seen(plane, u, v)) return;
-    BlockSums sums;
+    AlignmentSums<float> sums{};
     const int first = u - half_block;
     const float level = left_.row(v)[u];  // keeps digits
     const auto step = static_cast<float>(1 - plane.a2);
@@ -144,18 +129,19 @@ class PlaneAlignment {
         const float* const at = right + whole;
         const float value = at[0] + f * (at[1] - at[0]);
         const float gradient = 0.5F * ((1 - f) * (at[1] - at[-1]) + f * (at[2] - at[0]));
-        sums.add(left[k] - level, value - level, gradient);
+        sums.add({1, value - level, gradient, left[k] - value});
       }
     }
     solve_block(sums, block);
   }
 
-  /// Whether a block lies below the horizon, and its pixels along the plane in the right image.
+  /// Whether a block lies below the horizon, and what it reads along the plane in the right image.
   bool is_seen(const DisparityPlane& plane, int u, int v) const {
+    constexpr double rounding = 0.01, before = 1 + rounding, behind = 2 + rounding;  // pixels read beside a place
     for (const int y : {v - half_block, v + half_block}) {
       for (const int x : {u - half_block, u + half_block}) {
         const double d = plane.disparity(x, y);
-        if (!(d > 0 && x - d >= 1 && x - d <= right_.width() - 3)) return false;
+        if (!(d > 0 && x - d >= before && x - d <= right_.width() - 1 - behind)) return false;
       }
     }
     return true;

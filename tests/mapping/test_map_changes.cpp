@@ -34,7 +34,7 @@ RoadDamageRecord record(double depth_m, double depth_error_m, double area_m2, do
   RoadDamageRecord record;
   record.best.damage.kind = DamageKind::depression;
   record.best.at_m = {x, y};
-  record.max_depth_m = {depth_m, depth_error_m};
+  record.max_depth_m = record.mean_depth_m = {depth_m, depth_error_m};
   record.area_m2 = {area_m2, 0.01};
   for (int j = -10; j < 10; ++j) {
     for (int i = -10; i < 10; ++i) {

@@ -102,6 +102,7 @@ class FlightInventory {
     std::optional<Place> best_place;  ///< in the best frame
     Agreement frames;
     Damage measured;            ///< in the best frame
+    int piece = 0;              ///< of the first sighting with a place
     RigidTransform to_road{};   ///< from the axes of the first camera of the piece to the road of the first sighting
     OutlineCells covered, own;  ///< cells there of all sightings, and of that in the best frame
   };

@@ -171,10 +171,15 @@ std::int64_t FlightInventory::seen_in_picture(const Sighting& now, const Ids& ta
   return best;
 }
 
-/// Extends what one frame shows of a damage to what all have shown.
+/// Extends what one frame shows of a damage that the border cuts to what all have shown.
 void FlightInventory::extend(const FlightFrame& frame, const Sighting& now, bool is_best, Known& known, Damage& best) {
-  if (!now.place) return;
-  if (known.covered.empty()) known.to_road = inverse(frame.pose->road_to_world);
+  if (!known.measured.cut_by_border || !now.place) return;
+  if (is_best) known.own.clear();
+  if (known.covered.empty()) {
+    known.to_road = inverse(frame.pose->road_to_world);
+    known.piece = now.place->piece;
+  }
+  if (now.place->piece != known.piece) return;
   Outline outline;
   for (const auto& point : now.place->outline_m) {
     const auto on_road = transform_point(known.to_road, point);
@@ -183,8 +188,8 @@ void FlightInventory::extend(const FlightFrame& frame, const Sighting& now, bool
   const OutlineCells cells = cells_of(outline);
   known.covered.insert(cells.begin(), cells.end());
   if (is_best) known.own = cells;
+  if (known.own.empty()) return;
   best = known.measured;
-  if (!best.cut_by_border || known.own.empty()) return;
   DamageMetrics& metrics = *best.metrics;
   const double growth = static_cast<double>(known.covered.size()) / static_cast<double>(known.own.size());
   for (Measurement* const measured : {&metrics.area_m2, &metrics.volume_m3}) {

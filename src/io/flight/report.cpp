@@ -34,9 +34,8 @@ std::string notices_of(const FlightReportInput& input) {
   const std::size_t in_map = input.map ? input.map->damages.size() : 0;
   if (input.inspected == 0) {
     html +=
-        "<p class=\"notice\"><strong>Not inspected.</strong> Damage could not be searched for in any frame; frames.csv "
-        "has "
-        "the reasons.</p>";
+        "<p class=\"notice\"><strong>Not inspected.</strong> Damage could not be searched for in any frame: see "
+        "frames.csv.</p>";
   } else if (input.damages.empty() && in_map > 0) {
     html += "<p class=\"notice\"><strong>No damage found in single frames.</strong> Their map shows " +
             std::to_string(in_map) + ": see \"Damages on the map\".</p>";

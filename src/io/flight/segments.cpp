@@ -55,8 +55,8 @@ std::vector<RoadSegment> road_segments(std::span<const GeoFrame> frames, std::sp
          " such");
   }
   const auto index_of = [length_m](double station_m) { return static_cast<std::size_t>(station_m / length_m); };
-  const std::size_t count = index_of(end_m) + 1;
   const auto is_on_road = [end_m](double station_m) { return station_m >= 0 && station_m <= end_m; };
+  const std::size_t count = index_of(end_m) + 1;
   // The camera may see road ahead of its last position, or behind its first one.
   const auto segment_at = [&](double station_m) { return index_of(std::clamp(station_m, 0.0, end_m)); };
   std::vector<RoadSegment> segments(count);
@@ -66,7 +66,7 @@ std::vector<RoadSegment> road_segments(std::span<const GeoFrame> frames, std::sp
     if (is_on_road(frame.station_m)) members[segment_at(frame.station_m)].push_back(&frame);
   }
   for (const RoadDamage& damage : damages) {
-    if (damage.candidate || !is_on_road(station_of(damage.frame, frames))) continue;
+    if (damage.candidate || !is_on_road(station_of(damage.frame, frames)) || std::isnan(damage.station_m)) continue;
     const auto [first_m, last_m] = stations_of(damage, frames);
     const std::size_t first = segment_at(first_m), last = segment_at(last_m);
     for (std::size_t i = first; i <= last; ++i) {

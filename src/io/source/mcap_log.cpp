@@ -44,17 +44,8 @@ class McapLog final : public MessageLog {
       const std::optional<McapRecord> record = next_of_file();
       if (!record || record->opcode == McapOpcode::data_end) return std::nullopt;
       if (record->opcode == McapOpcode::chunk) {
-        rest_ = {};
-        try {
-          chunk_ = read_chunk(path_, record->content);
-        } catch (const SystemError&) {
-          throw;
-        } catch (const Error& error) {  // the next one may be sound
-          LoggedMessage lost;
-          lost.error = error.what();
-          return lost;
-        }
-        rest_ = chunk_;
+        const std::string error = unpack(record->content);
+        if (!error.empty()) return LoggedMessage{{}, 0, {}, error};
       } else if (record->opcode == McapOpcode::message) {
         if (std::optional<LoggedMessage> message = selected_message(record->content)) return message;
       }
@@ -88,6 +79,20 @@ class McapLog final : public MessageLog {
     message.topic = channels_.at(channel).topic;
     message.bytes.assign(fields.rest().begin(), fields.rest().end());
     return message;
+  }
+
+  /// Unpacks a chunk. Returns why it is lost; the next one may be sound.
+  std::string unpack(std::span<const std::uint8_t> content) {
+    rest_ = {};
+    try {
+      chunk_ = read_chunk(path_, content);
+    } catch (const SystemError&) {
+      throw;
+    } catch (const Error& error) {
+      return error.what();
+    }
+    rest_ = chunk_;
+    return {};
   }
 
   /// Takes what a record says of topics and chunks.
@@ -153,14 +158,8 @@ class McapLog final : public MessageLog {
         count(*record);
         continue;
       }
-      try {
-        chunk_ = read_chunk(path_, record->content);
-      } catch (const SystemError&) {
-        throw;
-      } catch (const Error&) {  // next() tells it
-        continue;
-      }
-      for (std::span<const std::uint8_t> rest = chunk_; const auto inner = next_record(rest);) count(*inner);
+      unpack(record->content);  // next() tells what is lost
+      while (const auto inner = next_record(rest_)) count(*inner);
     }
     cut_off_ = true;
   }

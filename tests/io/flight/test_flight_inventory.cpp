@@ -156,6 +156,13 @@ TEST(FlightInventory, DamageLongerThanViewHasAreaOfAll) {
     metrics.quantity = 2;
     EXPECT_EQ(inventory.add(frame), std::vector<std::int64_t>{1});
   }
+  FlightFrame elsewhere = frame_along(10, 500, {0}, 1);  // no link tells where; the picture joins it
+  elsewhere.road_status = RoadStatus::tracked;
+  Damage& again = elsewhere.damages[0];
+  again.metrics->distress = Distress::rut;
+  again.cut_by_border = true;
+  again.box_px = pothole(100 + 37 * 9, 50 + 83 * 9 % 300).box_px;
+  EXPECT_EQ(inventory.add(elsewhere), std::vector<std::int64_t>{1});
   const DamageMetrics& metrics = *inventory.damages()[0].best.metrics;
   EXPECT_NEAR(metrics.area_m2.value, 6.5, 0.1);
   EXPECT_NEAR(metrics.area_m2.std_error, 0.325, 0.005);
