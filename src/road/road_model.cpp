@@ -12,7 +12,6 @@
 #include "road/coarse_match.hpp"
 #include "road/downsampled_plane.hpp"
 #include "road/masked_blocks.hpp"
-#include "road/plane_alignment.hpp"
 #include "road/plane_evidence.hpp"
 #include "road/plane_fit.hpp"
 #include "road/plane_match.hpp"
@@ -326,13 +325,6 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   }
   FinePairs pairs(left, right, mask, factor);
   RoadModelEstimate found = assess_planes(pairs, planes.roads, evidence, limit, options, threads, estimate);
-  if (found.has_road()) {
-    constexpr double min_gain = 1.01;  // of evidence: not for a change that noise may make
-    const DisparityPlane aligned =
-        align_plane(left, right, mask, found.model, 2 * fine_factor(left.width()), options.with_roll, threads);
-    const bool is_better = evidence.of_plane(aligned) >= min_gain * evidence.of_plane(found.model);
-    if (is_better && limit.can_be_road(aligned)) found.model = aligned;
-  }
   if (few_match && !found.has_road()) found.reason = too_few(estimate.matches);
   const bool expected = (rig || last) && prior(found.model) >= 0.5;
   if (found.has_road() && !expected) {
