@@ -229,7 +229,9 @@ void add_track_options(CLI::App& command, TrackSettings& track, bool& candidates
       ->capture_default_str()
       ->type_name("S");
   command.add_flag("--candidates", candidates, "Add a layer of candidates to the GIS files");
-  command.add_option("--mount-yaw", track.mount_yaw_deg, "Yaw of the camera relative to the heading, clockwise")
+  command
+      .add_option("--mount-yaw", track.mount_yaw_deg,
+                  "Yaw of the camera relative to the direction of travel, clockwise; ruts run along that")
       ->type_name("DEG");
 }
 

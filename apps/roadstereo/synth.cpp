@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "calibration_yaml.hpp"
 #include "commands.hpp"
 #include "flight_path.hpp"
 #include "progress.hpp"

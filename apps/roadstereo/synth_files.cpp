@@ -55,14 +55,6 @@ void add_synthetic_pair(const synth::Scene& scene, const synth::SyntheticPair& p
   folder.add(names[6], truth_json(scene, pair));
 }
 
-std::string plain_yaml(const StereoCalibration& calibration) {
-  return fmt::format(
-      "# Rectified pair: focal length and principal point in pixels, baseline in metres.\n"
-      "focal_px: {}\ncx_px: {}\ncy_px: {}\nbaseline_m: {}\nwidth: {}\nheight: {}\n",
-      calibration.focal_px, calibration.cx_px, calibration.cy_px, calibration.baseline_m, calibration.width,
-      calibration.height);
-}
-
 std::string true_trajectory(const std::vector<std::array<double, 12>>& camera_to_road) {
   std::string text;
   for (const std::array<double, 12>& pose : camera_to_road) {

@@ -25,9 +25,6 @@ std::vector<std::string> synthetic_pair_files(const FrameNumber& number);
 void add_synthetic_pair(const synth::Scene& scene, const synth::SyntheticPair& pair, const FrameNumber& number,
                         io::OutputFolder& folder);
 
-/// Returns a calibration as plain YAML.
-std::string plain_yaml(const StereoCalibration& calibration);
-
 /// Returns the true trajectory as KITTI has it: a 3×4 pose per line, from the camera of the frame to that of the first.
 std::string true_trajectory(const std::vector<std::array<double, 12>>& camera_to_road);
 

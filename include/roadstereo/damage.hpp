@@ -34,6 +34,8 @@ struct DamageOptions {
   double min_area_share = 0.001;  ///< minimum area as a share of the image, 0 … 1; used without a calibration
   double min_confidence = 0.5;    ///< of a damage, 0 … 1; regions below are candidates. 0: all regions are damages
   bool protrusions = true;        ///< whether to find bumps, heave and debris too
+  double mount_yaw_deg = 0;       ///< yaw of the camera relative to the direction of travel, clockwise, −360 … 360:
+                                  ///< ruts and kerbs run along the road
   SeverityScheme severity = astm_d6433();  ///< tables of severities
 
   /// Throws Error naming the first option out of range.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "roadstereo/damage.hpp"
@@ -28,8 +29,11 @@ inline constexpr double footprint_m = 0.02;
 /// Finds damage in the heights of the map, window by window; the windows overlap. The heights above the plane of a
 /// window are converted to the disparities of a virtual rig that looks straight down and whose pixels are the cells,
 /// and searched by `find_damage`. The scale is chosen so that the median standard error of the window is 0.1 px. A
-/// damage that one window cuts is taken from the window that contains it. Throws Error when an option is out of range.
-std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& options);
+/// damage that one window cuts is taken from the window that contains it. Ruts are looked for along the nearest part of
+/// `paths`, (x, y) of the camera in the map; without any, as DamageOptions::mount_yaw_deg says of a camera whose
+/// picture has the map's y axis upwards. Throws Error when an option is out of range.
+std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& options,
+                                       std::span<const std::vector<std::array<double, 2>>> paths = {});
 
 /// Returns the damages of a frame at their positions in the map. `found`: result of `find_damage`; damages without
 /// metric values and candidates are left out.

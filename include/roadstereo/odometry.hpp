@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -65,7 +66,9 @@ struct OdometryFrame {
   ImageView<const float> disparity;    ///< pixels, NaN invalid
   ImageView<const float> sigma;        ///< standard error of the disparity, pixels
   bool has_road = false;
-  DisparityPlane road;  ///< unless `has_road` is false
+  DisparityPlane road;                                       ///< unless `has_road` is false
+  double time_s = std::numeric_limits<double>::quiet_NaN();  ///< NaN: unknown; by it missing frames are noticed, which
+                                                             ///< indices of a bag do not count
 };
 
 /// Estimates the motion of a rig from frame to frame: direct alignment of grey levels and disparities. Every frame is
@@ -83,7 +86,7 @@ class Odometry {
   /// Adds a frame, with an index above that of the last one. Returns its pose. Throws Error if the maps differ in size
   /// from each other or from earlier frames, if the calibration does not fit that size, or if the index does not grow.
   const FramePose& add(int frame, const OdometryFrame& maps);
-  const FramePose& add(int frame, const FrameResult& result);
+  const FramePose& add(int frame, const FrameResult& result, double time_s = std::numeric_limits<double>::quiet_NaN());
 
   /// Index of the frame that the next one is aligned with; −1 before the first.
   int reference() const;

@@ -162,8 +162,12 @@ class Pipeline {
 
   /// Leaves out pixels of the left image where `mask` (W×H) is not 0, such as those of a bonnet: they take no part in
   /// finding the road, and have neither disparity nor damage. It holds for all later frames; an empty mask ends it.
-  /// Throws Error with the engine cuda; `process` throws it when the sizes differ.
+  /// The engine cuda takes none: `auto` becomes cpu, and Error is thrown if cuda was asked for. `process` throws it
+  /// when the sizes differ.
   void set_mask(ImageView<const std::uint8_t> mask);
+
+  /// Sets PipelineOptions::white_level from the next frame on. Throws Error outside 0 … 65535.
+  void set_white_level(double level);
 
   /// Engine cuda: shares a device with the caller (roadstereo/device.hpp), from the next frame on. Frames may also lie
   /// in device memory. Throws Error for any other engine.

@@ -17,12 +17,11 @@ struct PointCloud {
   std::vector<std::array<std::uint8_t, 3>> colours;  ///< (red, green, blue) per point; empty: no colours
 };
 
-/// Maximum distance of the points of a cloud, in baselines. At that distance, a disparity error of 0.1 px moves a point
-/// by several metres with any usual camera.
-inline constexpr double farthest_baselines = 250;
+/// Smallest disparity of the points of a cloud, pixels, 0 at infinity: an error of 0.1 px is a tenth of the distance.
+inline constexpr double min_cloud_disparity_px = 1;
 
 /// Triangulates a disparity map: camera frame (x right, y down, z forward), metres, row by row. Skips pixels without a
-/// disparity, with d + doffs ≤ 0, and farther away than `farthest_baselines` baselines.
+/// disparity, and with d + doffs below `min_cloud_disparity_px`.
 PointCloud cloud_from_disparity(ImageView<const float> disparity, const StereoCalibration& calibration);
 /// The same with the colours of the left image. `white_level` as in to_grey. Throws Error if the sizes differ or the
 /// image has no data.

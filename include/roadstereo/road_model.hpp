@@ -47,7 +47,7 @@ struct RoadModelEstimate {
   double evidence = 0;          ///< evidence for the plane per pixel of the part of the image where it would be
                                 ///< visible, taken as at least half of the image; about 0 … 2; 0 when tracked
   double inlier_share = 0;      ///< share of the textured samples below the horizon that the plane explains, 0 … 1
-  double correlation = 0;       ///< 10th percentile of the NCC of blocks on the road, 0.3 … 1; 0 when unknown
+  double correlation = 0;       ///< 10th percentile of the NCC of blocks on the road at full size, 0 … 1; 0: unknown
   int matches = 0;              ///< reliable correspondences found over the whole image
   int inliers = 0;              ///< correspondences on the road
   double residual_px = 0;       ///< robust standard deviation of the inliers around the model, pixels

@@ -8,7 +8,7 @@ import sys
 
 def find_program() -> str:
     """Return the path of the command line tool: in the prefix or the build folder of this package, else in PATH."""
-    for folder in pathlib.Path(__file__).resolve().parents[1:5]:
+    for folder in list(pathlib.Path(__file__).resolve().parents)[1:5]:
         program = folder / "bin" / "roadstereo"
         if program.is_file() and os.access(program, os.X_OK):
             return str(program)

@@ -109,6 +109,7 @@ void bind_rectifier(py::module_& module) {
   py::class_<io::Rectifier>(module, "Rectifier",
                             "Undistorts and rectifies pairs of one rig. The pixel maps are computed once.")
       .def(py::init<const io::StereoRig&, int, int>(), py::arg("rig"), py::arg("width"), py::arg("height"),
+           py::call_guard<py::gil_scoped_release>(),
            "Compute the maps for frames of this size, pixels.\n\n"
            "Raises Error if the rig has another size, or if its right camera is not to the right of the left one.")
       .def_property_readonly("calibration", &io::Rectifier::calibration, "Calibration of the rectified pairs.")

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "bindings.hpp"
 #include "frame_array.hpp"
@@ -13,19 +14,28 @@ namespace {
 
 namespace py = pybind11;
 
+py::array read_frame(const std::filesystem::path& path) {
+  Frame frame = [&path] {
+    const py::gil_scoped_release release;
+    return io::read_frame(path.string());
+  }();
+  return frame_array(std::move(frame));
+}
+
 py::array_t<float> read_disparity(const std::filesystem::path& path) {
-  const Image<float> map = io::read_disparity(path.string());
+  const Image<float> map = [&path] {
+    const py::gil_scoped_release release;
+    return io::read_disparity(path.string());
+  }();
   return py::array_t<float>({map.height(), map.width()}, map.row(0));
 }
 
 }  // namespace
 
 void bind_image_files(py::module_& module) {
-  module.def(
-      "read_frame", [](const std::filesystem::path& path) { return frame_array(io::read_frame(path.string())); },
-      py::arg("path"),
-      "Read a PNG, JPEG, TIFF or PGM/PPM image: (H, W), or (H, W, 3 or 4) in the order BGR; uint8 or uint16.\n\n"
-      "Raises Error naming the file.");
+  module.def("read_frame", &read_frame, py::arg("path"),
+             "Read a PNG, JPEG, TIFF or PGM/PPM image: (H, W), or (H, W, 3 or 4) in the order BGR; uint8 or uint16.\n\n"
+             "Raises Error naming the file.");
   module.def("read_disparity", &read_disparity, py::arg("path"),
              "Read a disparity map, (H, W) float32, pixels, NaN invalid: float TIFF, PFM or 16-bit KITTI PNG.\n\n"
              "Raises Error naming the file.");

@@ -20,11 +20,10 @@ std::array<float, 3> to_float(const std::array<double, 3>& point) {
 /// Tells `use(u, v, point)` every point of the map, row by row.
 template <class Use>
 void for_each_point(const ImageView<const float>& disparity, const StereoCalibration& calibration, Use use) {
-  const double min_px = calibration.focal_px / farthest_baselines;
   for (int v = 0; v < disparity.height(); ++v) {
     for (int u = 0; u < disparity.width(); ++u) {
       const double d = disparity(u, v);
-      if (!std::isfinite(d) || d + calibration.disparity_offset_px < min_px) continue;
+      if (!std::isfinite(d) || d + calibration.disparity_offset_px < min_cloud_disparity_px) continue;
       use(u, v, to_float(calibration.point_m(u, v, d)));
     }
   }

@@ -54,10 +54,10 @@ std::string reason_for_pixels(const DamageInput& input) {
 
 /// Fit the road surface without `ruts`, which are found first, by alternating between it and the road region, and move
 /// the cells that the images do not support onto it before the last fit.
-RoadSurface find_road_surface(const DamageInput& input, const SurfaceCoordinates& coordinates, int threads,
-                              Cells& cells, Ruts& ruts) {
+RoadSurface find_road_surface(const DamageInput& input, const SurfaceCoordinates& coordinates, double mount_yaw_deg,
+                              int threads, Cells& cells, Ruts& ruts) {
   RoadSurface surface = fit_road_surface(cells, coordinates, threads);
-  ruts = find_ruts(cells, coordinates, surface, threads);
+  ruts = find_ruts(cells, coordinates, surface, mount_yaw_deg, threads);
   const auto refit = [&](Sampling sampling) {
     Image<std::uint8_t> region = find_road_region(cells, coordinates, surface, ruts, 0, threads);
     ruts.fill(0, region);
@@ -107,6 +107,7 @@ void DamageOptions::validate() const {
   require_range("damage", "min_area_m2", min_area_m2, 0.0, 1e4);
   require_range("damage", "min_area_share", min_area_share, 0.0, 1.0);
   require_range("damage", "min_confidence", min_confidence, 0.0, 1.0);
+  require_range("damage", "mount_yaw_deg", mount_yaw_deg, -360.0, 360.0);
   severity.validate();
 }
 
@@ -135,7 +136,7 @@ void find_damage(const DamageInput& input, const DamageOptions& options, int thr
   view.remove_outside(cells);
   const SurfaceCoordinates coordinates = surface_coordinates(cells, input, threads);
   Ruts ruts;
-  const RoadSurface surface = find_road_surface(input, coordinates, threads, cells, ruts);
+  const RoadSurface surface = find_road_surface(input, coordinates, options.mount_yaw_deg, threads, cells, ruts);
   DepthCells depth_cells = make_depth_cells(cells, surface, threads);
   result.non_metric_reason = reason_for_pixels(input);
   result.metric = result.non_metric_reason.empty();

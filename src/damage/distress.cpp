@@ -6,6 +6,8 @@
 #include <numbers>
 #include <sstream>
 
+#include "core/degrees.hpp"
+
 namespace roadstereo {
 namespace {
 
@@ -22,13 +24,14 @@ double elongation(const DamageMetrics& metrics) {
   return metrics.width_m > 0 ? metrics.length_m / metrics.width_m : 1;
 }
 
-bool is_along_road(const DamageMetrics& metrics) {
-  return std::numbers::pi / 2 - std::abs(metrics.angle_rad) <= max_oblique_rad;
+bool is_along_road(const DamageMetrics& metrics, double mount_yaw_deg) {
+  const double road_rad = std::numbers::pi / 2 + to_radians(mount_yaw_deg);  // from the x axis towards y
+  return std::abs(std::remainder(metrics.angle_rad - road_rad, std::numbers::pi)) <= max_oblique_rad;
 }
 
-bool is_kerb_step(const DamageMetrics& metrics, bool at_side) {
+bool is_kerb_step(const DamageMetrics& metrics, double mount_yaw_deg, bool at_side) {
   return at_side && metrics.max_depth_m.value >= min_step_m && metrics.length_m >= min_kerb_m &&
-         elongation(metrics) >= min_elongation && is_along_road(metrics);
+         elongation(metrics) >= min_elongation && is_along_road(metrics, mount_yaw_deg);
 }
 
 /// Whether two standard errors of a value do not include 0.
@@ -54,16 +57,17 @@ const char* name_of(DamageKind kind) {
   return kind == DamageKind::depression ? "depression" : "protrusion";
 }
 
-Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, double possible_slope, bool at_side) {
+Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, double mount_yaw_deg,
+                           double possible_slope, bool at_side) {
   const bool gentle = possible_slope < max_gentle_slope;
-  if (!gentle && is_kerb_step(metrics, at_side)) return Distress::kerb_step;
+  if (!gentle && is_kerb_step(metrics, mount_yaw_deg, at_side)) return Distress::kerb_step;
   if (damage.kind == DamageKind::protrusion) {
     const bool object = metrics.wall_slope > max_gentle_slope && metrics.diameter_m <= max_object_m;
     return object ? Distress::debris : Distress::bump;
   }
   const bool long_one = elongation(metrics) >= min_elongation;
   const bool in_rut = damage.evidence.rut_significance >= min_rut_sigmas && metrics.length_m > max_object_m;
-  const bool along = (long_one || in_rut) && is_along_road(metrics);
+  const bool along = (long_one || in_rut) && is_along_road(metrics, mount_yaw_deg);
   if (gentle) return along ? Distress::rut : Distress::depression;
   if (long_one && metrics.area_m2.value < min_pothole_m * metrics.length_m) return Distress::crack;
   return along && metrics.length_m > max_object_m ? Distress::rut : Distress::pothole;
@@ -73,8 +77,7 @@ std::string distress_reason(const DamageMetrics& metrics) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(1) << "wall 1 in " << 1 / metrics.wall_slope << " or steeper";
   if (elongation(metrics) >= min_elongation) {
-    text << ", " << elongation(metrics) << " times as long as wide, " << (is_along_road(metrics) ? "along" : "across")
-         << " the road";
+    text << ", " << elongation(metrics) << " times as long as wide";
   }
   return text.str();
 }

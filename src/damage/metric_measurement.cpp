@@ -236,7 +236,7 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
     damage.evidence.likely_wall_slope = std::sqrt(std::min(1.0, metrics.wall_slope) * std::min(1.0, possible_slope));
   }
   if (input.calibration) damage.evidence.extent = metrics.diameter_m / (0.5 * straightedge_m);
-  metrics.distress = classify_distress(damage, metrics, possible_slope, at_side);
+  metrics.distress = classify_distress(damage, metrics, options.mount_yaw_deg, possible_slope, at_side);
   return metrics;
 }
 

@@ -199,14 +199,15 @@ void Ruts::fill(std::uint8_t value, Image<std::uint8_t>& mask) const {
   }
 }
 
-Ruts find_ruts(const Cells& cells, const SurfaceCoordinates& coordinates, const RoadSurface& surface, int threads) {
+Ruts find_ruts(const Cells& cells, const SurfaceCoordinates& coordinates, const RoadSurface& surface,
+               double mount_yaw_deg, int threads) {
   constexpr int max_degrees = 30, step_degrees = 5, directions = 2 * max_degrees / step_degrees + 1;
   if (!coordinates.is_metric) return {};
   const HeightSamples samples = sample_heights(cells, coordinates, surface);
   if (samples.all.empty()) return {};
   std::array<RutGrid, directions> found;
   parallel_for(directions, threads, [&](int k, int) {
-    const double angle = to_radians(k * step_degrees - max_degrees);
+    const double angle = to_radians(mount_yaw_deg + k * step_degrees - max_degrees);
     found[static_cast<std::size_t>(k)] = find_along(samples, {std::cos(angle), std::sin(angle)});
   });
   const auto best = std::max_element(found.begin(), found.end(), [](const RutGrid& one, const RutGrid& other) {

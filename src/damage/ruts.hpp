@@ -6,7 +6,8 @@
 
 namespace roadstereo {
 
-/// Ruts: strips along the road, in one direction up to 30° from the camera's, that lie below a straightedge across it.
+/// Ruts: strips along the road, in one direction up to 30° from that of travel, that lie below a straightedge across
+/// it.
 struct Ruts {
   Image<std::uint8_t> labels;         ///< number of the rut of each cell, 1 …; 0: none; empty without ruts
   Image<float> depth_m;               ///< of each cell below the straightedge, mean of its rut; 0 outside
@@ -20,6 +21,8 @@ struct Ruts {
 
 /// Find ruts; none without metric coordinates. Ruts continue along the road, and a pair of wheel tracks covers half of
 /// a lane, so that a robust fit does not treat them as outliers: the surface of the road must be fitted without them.
-Ruts find_ruts(const Cells& cells, const SurfaceCoordinates& coordinates, const RoadSurface& surface, int threads);
+/// `mount_yaw_deg`: DamageOptions::mount_yaw_deg.
+Ruts find_ruts(const Cells& cells, const SurfaceCoordinates& coordinates, const RoadSurface& surface,
+               double mount_yaw_deg, int threads);
 
 }  // namespace roadstereo

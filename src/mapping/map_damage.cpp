@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "core/degrees.hpp"
 #include "core/order_statistics.hpp"
 #include "mapping/footprints.hpp"
 #include "roadstereo/error.hpp"
@@ -167,11 +168,32 @@ std::vector<MapBox> windows_of(const RoadMap& map, int side) {
   return windows;
 }
 
+/// Mean direction of the paths within `near_m` of a place, degrees clockwise from y, −90 … 90, of both ways of each;
+/// nothing if there is none.
+std::optional<double> azimuth_near(const std::array<double, 2>& place, double near_m,
+                                   std::span<const std::vector<std::array<double, 2>>> paths) {
+  double sum_sine = 0, sum_cosine = 0;  // of twice the angle
+  for (const auto& path : paths) {
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      const double dx = path[i][0] - path[i - 1][0], dy = path[i][1] - path[i - 1][1], length_m = std::hypot(dx, dy);
+      const double away_m =
+          std::hypot(0.5 * (path[i][0] + path[i - 1][0]) - place[0], 0.5 * (path[i][1] + path[i - 1][1]) - place[1]);
+      if (!(length_m > 0) || away_m > near_m) continue;
+      const double weight = length_m * (1 - away_m / near_m), twice = 2 * std::atan2(dx, dy);
+      sum_sine += weight * std::sin(twice);
+      sum_cosine += weight * std::cos(twice);
+    }
+  }
+  if (sum_sine == 0 && sum_cosine == 0) return std::nullopt;
+  return to_degrees(0.5 * std::atan2(sum_sine, sum_cosine));
+}
+
 }  // namespace
 
-std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& options) {
+std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& options,
+                                       std::span<const std::vector<std::array<double, 2>>> paths) {
   constexpr int usual_side = 1024, min_side = 256;
-  constexpr double min_side_m = 4, max_side_m = 10;
+  constexpr double min_side_m = 4, max_side_m = 10, max_near_m = 1000;
   options.validate();
   const double cell_m = map.options().cell_m;
   const auto cells = [cell_m](double length_m) { return static_cast<int>(std::ceil(length_m / cell_m / 2)) * 2; };
@@ -179,10 +201,18 @@ std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& 
   std::vector<MapDamage> findings;
   WindowView view;
   DamageMap found;
+  DamageOptions of_window = options;
   for (const MapBox& box : windows_of(map, side)) {
     if (!make_view(map, box, view)) continue;
+    const std::array<double, 2> centre_m{(box.i0 + 0.5 * side) * cell_m, (box.j0 + 0.5 * side) * cell_m};
+    for (double near_m = side * cell_m; near_m <= max_near_m; near_m *= 2) {
+      const std::optional<double> azimuth_deg = azimuth_near(centre_m, near_m, paths);
+      if (!azimuth_deg) continue;
+      of_window.mount_yaw_deg = -*azimuth_deg;
+      break;
+    }
     try {
-      find_damage(view.input, options, map.options().threads, found);
+      find_damage(view.input, of_window, map.options().threads, found);
     } catch (const SystemError&) {
       throw;
     } catch (const Error&) {  // too little of it lies on one surface

@@ -110,6 +110,7 @@ struct RoadMap::State {
   TileStore store;
   ViewErrorSums sums;
   std::vector<std::optional<CellMeasurement>> seen;  ///< by the frame that is added, of a tile
+  bool backwards = false;  ///< order of the tiles of the next frame: the last ones of this one are still in memory
 };
 
 RoadMap::RoadMap(const std::filesystem::path& folder, const RoadMapOptions& options) {
@@ -143,40 +144,44 @@ std::size_t RoadMap::add(const MapFrame& frame) {
   state_->seen.resize(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
   std::vector<std::size_t> row_cells(static_cast<std::size_t>(side));
   std::vector<ViewErrorSums> row_sums(static_cast<std::size_t>(side));
-  for (int row = range.row0; row <= range.row1; ++row) {
-    for (int column = range.column0; column <= range.column1; ++column) {
-      const int i0 = std::max(box.i0, column * side), i1 = std::min(box.i0 + box.columns, (column + 1) * side);
-      const int j0 = std::max(box.j0, row * side), j1 = std::min(box.j0 + box.rows, (row + 1) * side);
-      const auto line = [&](int j) {  // index of column 0 of the map in row j of the tile
-        return static_cast<std::ptrdiff_t>(j - row * side) * side - static_cast<std::ptrdiff_t>(column) * side;
-      };
-      std::fill(row_cells.begin(), row_cells.end(), 0);
-      parallel_rows(j1 - j0, rows_per_band, options.threads, [&](int first, int last, int) {
-        for (int j = j0 + first; j < j0 + last; ++j) {
-          for (int i = i0; i < i1; ++i) {
-            auto& seen = state_->seen[static_cast<std::size_t>(line(j) + i)];
-            seen = projection.measure((i + 0.5) * options.cell_m, (j + 0.5) * options.cell_m);
-            if (seen) ++row_cells[static_cast<std::size_t>(j - row * side)];
-          }
+  const int columns = range.column1 - range.column0 + 1, tiles = columns * (range.row1 - range.row0 + 1);
+  std::vector<ViewErrorSums> sums(static_cast<std::size_t>(tiles));
+  for (int k = 0; k < tiles; ++k) {
+    const int tile_index = state_->backwards ? tiles - 1 - k : k;
+    const int row = range.row0 + tile_index / columns, column = range.column0 + tile_index % columns;
+    const int i0 = std::max(box.i0, column * side), i1 = std::min(box.i0 + box.columns, (column + 1) * side);
+    const int j0 = std::max(box.j0, row * side), j1 = std::min(box.j0 + box.rows, (row + 1) * side);
+    const auto line = [&](int j) {  // index of column 0 of the map in row j of the tile
+      return static_cast<std::ptrdiff_t>(j - row * side) * side - static_cast<std::ptrdiff_t>(column) * side;
+    };
+    std::fill(row_cells.begin(), row_cells.end(), 0);
+    parallel_rows(j1 - j0, rows_per_band, options.threads, [&](int first, int last, int) {
+      for (int j = j0 + first; j < j0 + last; ++j) {
+        for (int i = i0; i < i1; ++i) {
+          auto& seen = state_->seen[static_cast<std::size_t>(line(j) + i)];
+          seen = projection.measure((i + 0.5) * options.cell_m, (j + 0.5) * options.cell_m);
+          if (seen) ++row_cells[static_cast<std::size_t>(j - row * side)];
         }
-      });
-      const std::size_t count = std::accumulate(row_cells.begin(), row_cells.end(), std::size_t{0});
-      if (count == 0) continue;  // a corner of the box that the frame does not show
-      cells += count;
-      TileStore::Cells& tile = state_->store.write({column, row});
-      std::fill(row_sums.begin(), row_sums.end(), ViewErrorSums{});
-      parallel_rows(j1 - j0, rows_per_band, options.threads, [&](int first, int last, int) {
-        for (int j = j0 + first; j < j0 + last; ++j) {
-          for (int i = i0; i < i1; ++i) {
-            const auto index = static_cast<std::size_t>(line(j) + i);
-            const auto& seen = state_->seen[index];
-            if (seen) tile[index].add(*seen, sigmas, cell_m, row_sums[static_cast<std::size_t>(j - row * side)]);
-          }
+      }
+    });
+    const std::size_t count = std::accumulate(row_cells.begin(), row_cells.end(), std::size_t{0});
+    if (count == 0) continue;  // a corner of the box that the frame does not show
+    cells += count;
+    TileStore::Cells& tile = state_->store.write({column, row});
+    std::fill(row_sums.begin(), row_sums.end(), ViewErrorSums{});
+    parallel_rows(j1 - j0, rows_per_band, options.threads, [&](int first, int last, int) {
+      for (int j = j0 + first; j < j0 + last; ++j) {
+        for (int i = i0; i < i1; ++i) {
+          const auto index = static_cast<std::size_t>(line(j) + i);
+          const auto& seen = state_->seen[index];
+          if (seen) tile[index].add(*seen, sigmas, cell_m, row_sums[static_cast<std::size_t>(j - row * side)]);
         }
-      });
-      for (const ViewErrorSums& sums : row_sums) state_->sums.add(sums);
-    }
+      }
+    });
+    for (const ViewErrorSums& of_row : row_sums) sums[static_cast<std::size_t>(tile_index)].add(of_row);
   }
+  for (const ViewErrorSums& of_tile : sums) state_->sums.add(of_tile);
+  state_->backwards = !state_->backwards;
   return cells;
 }
 

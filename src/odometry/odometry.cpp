@@ -52,7 +52,8 @@ struct Odometry::State {
 
  private:
   void require_valid(int frame, const OdometryFrame& maps) const;
-  RigidMotion predicted(int frame) const;
+  int steps_to(int frame, double time_s) const;
+  RigidMotion predicted(int steps) const;
   std::optional<Alignment> link(const Reference& from, const FrameMaps& maps, const OdometryFrame& frame,
                                 const std::optional<RigidMotion>& start) const {
     return estimator.link(from.seen, maps, frame, {start, 0, offset_prior(), usual_correlation_});
@@ -64,11 +65,13 @@ struct Odometry::State {
 
   ImagePyramid pyramid_;
   std::optional<Reference> reference_;
-  std::optional<Reference> lost_;        ///< reference of the last piece of more than one frame
-  bool is_linked_ = false;               ///< whether a frame was linked since the piece began
-  std::optional<RigidMotion> velocity_;  ///< from camera to camera per frame
-  double offset_px_ = 0;                 ///< disparity offset at infinity, filtered
-  double offset_variance_ = 0.25;        ///< pixels²; before the first link that of any rig
+  std::optional<Reference> lost_;                             ///< reference of the last piece of more than one frame
+  bool is_linked_ = false;                                    ///< whether a frame was linked since the piece began
+  std::optional<RigidMotion> velocity_;                       ///< from camera to camera per step
+  double time_s_ = std::numeric_limits<double>::quiet_NaN();  ///< of the last frame
+  double step_s_ = 0;                                         ///< usual time from frame to frame; 0: unknown
+  double offset_px_ = 0;                                      ///< disparity offset at infinity, filtered
+  double offset_variance_ = 0.25;                             ///< pixels²; before the first link that of any rig
   bool offset_noticed_ = false;
   double usual_correlation_ = 0;  ///< of the last links
   int width_ = 0, height_ = 0;
@@ -133,13 +136,21 @@ void Odometry::State::make_reference(const FrameMaps& maps, const OdometryFrame&
   estimator.select(maps, frame, reference_->seen);
 }
 
+/// Intervals since the last frame: by the indices, or more by the times, where frames are missing without an index.
+int Odometry::State::steps_to(int frame, double time_s) const {
+  constexpr double most = 20;  // farther ahead nothing is predicted
+  const int frames = trajectory.frames.empty() ? 1 : frame - trajectory.frames.back().frame;
+  const double by_time = step_s_ > 0 ? std::round((time_s - time_s_) / step_s_) : 0;
+  return by_time > frames && by_time <= most ? static_cast<int>(by_time) : frames;
+}
+
 /// Motion from the camera of the reference, by the velocity of the last frames.
-RigidMotion Odometry::State::predicted(int frame) const {
+RigidMotion Odometry::State::predicted(int steps) const {
   const FramePose& last = trajectory.frames.back();
   RigidMotion motion = inverse(motion_of(last.camera_to_world)) * motion_of(reference_->pose.camera_to_world);
   if (!velocity_) return orthonormal(motion);
   Twist twist = twist_of(*velocity_);
-  for (double& value : twist) value *= frame - last.frame;
+  for (double& value : twist) value *= steps;
   return orthonormal(rigid_motion(twist) * motion);
 }
 
@@ -152,11 +163,17 @@ const FramePose& Odometry::State::add(int frame, const OdometryFrame& maps) {
   height_ = maps.grey.height();
   pyramid_.build(maps.grey);
   const FrameMaps own{pyramid_, maps.disparity, maps.sigma, estimator.calibration().disparity_offset_px};
+  const int steps = steps_to(frame, maps.time_s);
+  constexpr double memory = 0.8;
+  if (const double step_s = (maps.time_s - time_s_) / steps; step_s > 0) {
+    step_s_ = step_s_ > 0 ? memory * step_s_ + (1 - memory) * step_s : step_s;
+  }
+  time_s_ = maps.time_s;
   std::optional<Alignment> alignment;
   bool is_lost = false;
   if (reference_) {
     const bool follows = trajectory.frames.back().piece == reference_->pose.piece;
-    alignment = link(*reference_, own, maps, follows ? std::optional(predicted(frame)) : std::nullopt);
+    alignment = link(*reference_, own, maps, follows ? std::optional(predicted(steps)) : std::nullopt);
     if (!alignment && lost_) {
       alignment = link(*lost_, own, maps, std::nullopt);
       is_lost = alignment.has_value();
@@ -174,7 +191,6 @@ const FramePose& Odometry::State::add(int frame, const OdometryFrame& maps) {
     return trajectory.frames.back();
   }
   is_linked_ = true;
-  constexpr double memory = 0.8;
   measure_offset(*alignment);
   usual_correlation_ = usual_correlation_ > 0 ? memory * usual_correlation_ + (1 - memory) * alignment->correlation
                                               : alignment->correlation;
@@ -185,7 +201,7 @@ const FramePose& Odometry::State::add(int frame, const OdometryFrame& maps) {
   velocity_.reset();
   if (before.piece == pose.piece) {
     Twist twist = twist_of(inverse(motion_of(pose.camera_to_world)) * motion_of(before.camera_to_world));
-    for (double& value : twist) value /= frame - before.frame;
+    for (double& value : twist) value /= steps;
     velocity_ = rigid_motion(twist);
   }
   if (alignment->overlap < estimator.options().reference_overlap) make_reference(own, maps);
@@ -204,8 +220,8 @@ const FramePose& Odometry::add(int frame, const OdometryFrame& maps) {
   return state_->add(frame, maps);
 }
 
-const FramePose& Odometry::add(int frame, const FrameResult& result) {
-  return add(frame, {result.grey, result.disparity, result.sigma, result.roll_found, result.geometry.plane});
+const FramePose& Odometry::add(int frame, const FrameResult& result, double time_s) {
+  return add(frame, {result.grey, result.disparity, result.sigma, result.roll_found, result.geometry.plane, time_s});
 }
 
 int Odometry::reference() const {

@@ -70,9 +70,8 @@ void find_damage(const FrameResult& frame, const std::optional<StereoCalibration
   input.smoothing_px = frame.smoothing_px;
   input.grey = frame.grey;
   input.right = frame.right;
-  Image<std::uint8_t> outside;
-  const bool has_border = find_black_border(frame.grey, frame.mask, outside);
-  input.mask = has_border ? outside : frame.mask;
+  const PictureMask mask(frame.grey, frame.mask);
+  input.mask = mask.view();
   if (!frame.sigma.empty()) input.shift = frame.shift;  // a given map has neither errors nor a range searched
   input.plane = frame.geometry.plane;
   input.calibration = calibration;

@@ -62,9 +62,9 @@ class FrameStages {
  public:
   virtual ~FrameStages() = default;
 
-  /// Converts both images to grey. Throws Error for images of one grey level and for two equal images; a device throws
-  /// it when the host next waits.
-  virtual GreyPair convert_to_grey(const FrameView& left, const FrameView& right) = 0;
+  /// Converts both images to grey (to_grey). Throws Error for images of one grey level and for two equal images; a
+  /// device throws it when the host next waits.
+  virtual GreyPair convert_to_grey(const FrameView& left, const FrameView& right, double white_level) = 0;
   /// The pair in host memory.
   virtual GreyPair on_host(const GreyPair& pair) = 0;
   /// transform_target without a road: the pair without the target's misalignment, valid until `transform_perspective`.

@@ -59,12 +59,12 @@ class HostStages final : public FrameStages {
     }
   }
 
-  GreyPair convert_to_grey(const FrameView& left, const FrameView& right) override {
-    for (const FrameView* frame : {&left, &right}) grey_weights(*frame, options_.white_level);  // left is named first
+  GreyPair convert_to_grey(const FrameView& left, const FrameView& right, double white_level) override {
+    for (const FrameView* frame : {&left, &right}) grey_weights(*frame, white_level);  // left is named first
     PairContents contents;
     parallel_for(2, threads_, [&](int side, int) {
       GreyImage& grey = side == 0 ? left_ : right_;
-      to_grey(side == 0 ? left : right, options_.white_level, grey);
+      to_grey(side == 0 ? left : right, white_level, grey);
       (side == 0 ? contents.left : contents.right) = {has_contrast(grey), grey(0, 0)};
     });
     contents.equal = left_ == right_;

@@ -172,6 +172,8 @@ void visit_options(Options& o, Visitor visit) {
   visit("damage.min_area_m2", o.damage.min_area_m2, "smallest damage on the road, square metres (needs a calibration)");
   visit("damage.min_area_share", o.damage.min_area_share, "smallest damage without a calibration, share of the image");
   visit("damage.min_confidence", o.damage.min_confidence, "minimum confidence of a damage; less is a candidate");
+  visit("damage.mount_yaw_deg", o.damage.mount_yaw_deg,
+        "yaw of the camera relative to the direction of travel, clockwise, degrees: ruts run along the road");
   visit("damage.protrusions", o.damage.protrusions, "find bumps, heave and debris as well");
 }
 

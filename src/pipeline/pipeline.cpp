@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/format_message.hpp"
+#include "core/noise_correlation.hpp"
 #include "core/parallel.hpp"
 #include "core/require_size.hpp"
 #include "core/scratch.hpp"
@@ -84,8 +85,7 @@ struct Pipeline::State {
   std::string engine_name;
   int threads = 1;
   std::unique_ptr<FrameStages> stages;
-  Image<std::uint8_t> mask;     ///< not 0 masked; empty: none
-  Image<std::uint8_t> outside;  ///< scratch: of the picture, where it has a black border
+  Image<std::uint8_t> mask;  ///< not 0 masked; empty: none
 
   PipelineState carried;
   Clock::time_point begin;    ///< of the frame
@@ -145,7 +145,7 @@ void Pipeline::State::begin_frame(const FrameView& left, const FrameView& right)
 
 GreyPair Pipeline::State::convert_to_grey(const FrameView& left, const FrameView& right) {
   const StageTimer timer(result.ms.prepare);
-  GreyPair pair = stages->convert_to_grey(left, right);
+  GreyPair pair = stages->convert_to_grey(left, right, options.white_level);
   pair.mask = mask;
   return pair;
 }
@@ -184,11 +184,10 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   const GreyPair on_host = stages->on_host(pair);
   if (options.check_rows) measure_rows(on_host, Rows::of_new_road);
   const GreyPair grey = align_on_host(on_host);
-  const bool has_border = find_black_border(grey.left, mask, outside);
-  const ImageView<const std::uint8_t> left_out = has_border ? outside : mask;
+  const PictureMask picture(grey.left, mask);
   const auto last = carried.road ? std::optional(carried.road->model) : std::nullopt;
-  result.road =
-      roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, left_out, last);
+  result.road = roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads,
+                                                picture.view(), last);
   if (!result.road.has_road()) {
     result.warnings.push_back(format_message("no-road: no road was found (", result.road.reason,
                                              "): the pair was matched over all disparities up to a quarter "
@@ -228,7 +227,10 @@ void Pipeline::State::measure_rows(const GreyPair& grey, Rows of) {
   constexpr double max_offset_px = 0.5;
   constexpr double max_spread_px = 1.0;
   const bool is_measured = result.rows.points > 0;  // before the frame lost its tracked road
-  if (!is_measured) result.rows = measure_row_alignment(grey.left, grey.right, threads, mask);
+  if (!is_measured) {
+    const PictureMask picture(grey.left, mask);
+    result.rows = measure_row_alignment(grey.left, grey.right, threads, picture.view());
+  }
   carried.frames_since_rows = 0;
   const RowAlignment& rows = result.rows;
   if (!rows.known()) {
@@ -534,9 +536,22 @@ void Pipeline::restore(const PipelineState& carried) {
 }
 
 void Pipeline::set_mask(ImageView<const std::uint8_t> mask) {
-  if (state_->engine_name == "cuda") fail("the engine cuda takes no mask; use another one, such as cpu");
+  if (state_->engine_name == "cuda" && !mask.empty()) {
+    if (state_->options.engine != "auto") fail("the engine cuda takes no mask; use another one, such as cpu");
+    PipelineOptions on_host = state_->options;
+    on_host.engine = state_->engine_name = "cpu";
+    state_->stages = make_stages(on_host.engine, on_host, state_->calibration);
+    state_->has_frame = state_->has_maps = false;
+  }
   state_->mask.resize(mask.width(), mask.height());
   for (int v = 0; v < mask.height(); ++v) std::copy_n(mask.row(v), mask.width(), state_->mask.row(v));
+}
+
+void Pipeline::set_white_level(double level) {
+  PipelineOptions changed = state_->options;
+  changed.white_level = level;
+  changed.validate();
+  state_->options.white_level = level;
 }
 
 void Pipeline::set_device_options(const DeviceOptions& use) {

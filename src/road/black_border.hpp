@@ -2,15 +2,26 @@
 
 #include <cstdint>
 
+#include "core/scratch.hpp"
 #include "roadstereo/image.hpp"
 
 namespace roadstereo {
 
-/// Finds what lies outside of the picture: what is black from a side of the image on, as rectification, letterboxes and
-/// pillarboxes leave it. Its edge is at the same place in both images and would match there, at a disparity of 0.
-/// `outside`: 255 there and where `mask` (empty, or of the same size) is not 0, else 0. Returns false, with `outside`
-/// undefined, where less than one in 50 pixels of its sides, or in 500 of the image, is black.
-bool find_black_border(ImageView<const std::int16_t> grey, ImageView<const std::uint8_t> mask,
-                       Image<std::uint8_t>& outside);
+/// The mask of an image (empty, or of its size; not 0 where pixels are left out) together with what lies outside of the
+/// picture: what is black from a side of the image on, as rectification, letterboxes and pillarboxes leave it. Its edge
+/// is at the same place in both images and would match there, at a disparity of 0. The mask alone where less than one
+/// in 50 pixels of the sides, or in 500 of the image, is black. In scratch memory.
+class PictureMask {
+ public:
+  PictureMask(ImageView<const std::int16_t> grey, ImageView<const std::uint8_t> mask);
+
+  bool has_border() const { return has_border_; }
+  ImageView<const std::uint8_t> view() const { return view_; }
+
+ private:
+  ScratchVector<std::uint8_t> outside_;
+  ImageView<const std::uint8_t> view_;
+  bool has_border_ = false;
+};
 
 }  // namespace roadstereo

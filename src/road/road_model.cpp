@@ -7,6 +7,7 @@
 
 #include "core/downsample.hpp"
 #include "core/format_message.hpp"
+#include "core/noise_correlation.hpp"
 #include "core/require_range.hpp"
 #include "core/require_size.hpp"
 #include "road/coarse_match.hpp"
@@ -119,7 +120,7 @@ Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, PlaneM
   PlaneFitStatistics& evidence = result.evidence;
   evidence.tried = found.tried;
   if (found.correlations.size() >= static_cast<std::size_t>(min_matches)) {
-    evidence.correlation = lower_quantile(found.correlations, correlation_p10);
+    evidence.correlation = full_size_correlation(lower_quantile(found.correlations, correlation_p10), factor);
   }
   result.points = points_to_full_resolution(std::move(found.points), factor);
   evidence.points = static_cast<int>(result.points.size());

@@ -25,12 +25,6 @@ inline int adapt_radius(int radius, double correlation) {
   return std::max(radius, std::min(adapted, max_radius));
 }
 
-/// Correlation after downsampling by `factor`, which averages white noise over factor² pixels; 0 stays unknown.
-inline double downsampled_correlation(double correlation, int factor) {
-  const double signal = factor * factor * correlation;
-  return signal / (signal + 1 - correlation);
-}
-
 /// Length of road that a row covers over the width that a column does, at the centre of the lower half of the image: 1
 /// seen from above, Z / h far ahead of a camera at height h. Of d = a0 + a1 v, 0 at infinity, the depth Z = f B / d
 /// changes by −Z a1 / d a row. 1 where the plane is behind the camera there.

@@ -9,8 +9,8 @@
 #include <string>
 #include <thread>
 
+#include "calibration_yaml.hpp"
 #include "live/live_command.hpp"
-#include "synth_files.hpp"
 #include "tests/live/memory_source.hpp"
 
 namespace roadstereo {

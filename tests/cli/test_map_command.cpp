@@ -66,6 +66,34 @@ TEST_F(MapCommand, SaysHowManyFramesHaveNoPose) {
   EXPECT_EQ(result["reasons"][0], "1 of 2 frames have no pose in one.txt");
 }
 
+/// What a standing camera shows again and again says the same once more: the map is that of one frame of each place.
+TEST_F(MapCommand, FramesOfStandingCameraCountOnce) {
+  make_flight("320x180");
+  const std::string poses = read_text(folder_ / "flight/trajectory_kitti.txt");
+  const std::size_t second = poses.find('\n') + 1;
+  std::string standing;
+  int frame = 0;
+  for (const auto& [of, times] : {std::pair{0, 4}, std::pair{1, 3}}) {
+    for (int i = 0; i < times; ++i, ++frame) {
+      for (const std::string side : {"left", "right"}) {
+        std::filesystem::create_directories(folder_ / "light" / side);
+        std::filesystem::copy(folder_ / "flight" / side / ("00000" + std::to_string(of) + ".png"),
+                              folder_ / "light" / side / ("00000" + std::to_string(frame) + ".png"));
+      }
+      standing += of == 0 ? poses.substr(0, second) : poses.substr(second);
+    }
+  }
+  write("light.txt", standing);
+  ASSERT_EQ(map("--trajectory flight/trajectory_kitti.txt --quiet").exit_code, 0);
+  const Outcome outcome =
+      run("map light --calibration flight/calibration.yaml --trajectory light.txt --output once --quiet");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(json_file("once/map.json")["frames"], 7);
+  EXPECT_EQ(json_file("once/map.json")["mapped"], 2);
+  EXPECT_TRUE(read_text(folder_ / "map/height.tif") == read_text(folder_ / "once/height.tif"));
+  EXPECT_TRUE(read_text(folder_ / "map/sigma.tif") == read_text(folder_ / "once/sigma.tif"));
+}
+
 // The number of frames is an estimate for bags and videos: what has been read counts.
 TEST_F(MapCommand, SaysWhereRecordingEnds) {
   make_flight("160x90");
@@ -115,6 +143,8 @@ TEST_F(MapCommand, RunIsMappedWithItsOwnOptions) {
   EXPECT_TRUE(read_text(folder_ / "map/height.tif") == read_text(folder_ / "same/height.tif"));
   EXPECT_EQ(json_file("run/summary.json")["inputs"]["source"][0], "../flight");
   expect_complaint(run("map run --preset paper --output map"), "--preset is for recordings");
+  expect_complaint(run("map run --scope scene --output map"), "--scope is for recordings");
+  expect_complaint(run("map run --rate 5 --output map"), "--rate is for recordings");
   expect_complaint(run("map run run --output map"), "those of their first cameras");
   expect_complaint(run("map run flight --output map"), "not both");
   expect_complaint(run("map run --output run"), "this folder has the results of inspect");

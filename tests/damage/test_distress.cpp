@@ -117,7 +117,8 @@ TEST(Distress, FollowsShape) {
 /// wider than that is no object on the road.
 TEST(Distress, FollowsSize) {
   constexpr double steep = 0.5, along_road = std::numbers::pi / 2;
-  const auto distress = [](DamageKind kind, double length_m, double width_m, double angle_rad) {
+  const auto distress = [](DamageKind kind, double length_m, double width_m, double angle_rad,
+                           double mount_yaw_deg = 0) {
     DamageMetrics metrics;
     metrics.length_m = length_m;
     metrics.width_m = width_m;
@@ -127,10 +128,15 @@ TEST(Distress, FollowsSize) {
     metrics.wall_slope = steep;
     Damage damage;
     damage.kind = kind;
-    return classify_distress(damage, metrics, steep, false);
+    return classify_distress(damage, metrics, mount_yaw_deg, steep, false);
   };
   EXPECT_EQ(distress(DamageKind::depression, 2.4, 0.45, along_road), Distress::rut);
   EXPECT_EQ(distress(DamageKind::depression, 2.4, 0.45, 0), Distress::pothole) << "across the road";
+  EXPECT_EQ(distress(DamageKind::depression, 2.4, 0.45, 0, 90), Distress::rut) << "the camera looks to the right";
+  EXPECT_EQ(distress(DamageKind::depression, 2.4, 0.45, along_road, -90), Distress::pothole);
+  EXPECT_EQ(distress(DamageKind::depression, 2.4, 0.45, std::numbers::pi / 4, -45), Distress::rut)
+      << "0.71 to the right";
+  EXPECT_EQ(distress(DamageKind::depression, 2.4, 0.45, std::numbers::pi / 4, 45), Distress::pothole);
   EXPECT_EQ(distress(DamageKind::depression, 1.2, 0.3, along_road), Distress::pothole) << "as short as potholes are";
   EXPECT_EQ(distress(DamageKind::protrusion, 0.3, 0.3, 0), Distress::debris);
   EXPECT_EQ(distress(DamageKind::protrusion, 2.4, 2, 0), Distress::bump) << "a speed table";

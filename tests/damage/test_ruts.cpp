@@ -75,7 +75,7 @@ struct Found {
 
   explicit Found(const Lane& lane)
       : cells(make_cells(lane.transformed, {}, 0, 2, 1)), coordinates(surface_coordinates(cells, lane.input(), 1)) {
-    ruts = find_ruts(cells, coordinates, fit_road_surface(cells, coordinates, 1), 1);
+    ruts = find_ruts(cells, coordinates, fit_road_surface(cells, coordinates, 1), 0, 1);
   }
 
   /// Share of the cells nearer to the line x = middle + slope·y than `near_m` that lie in a rut.
@@ -163,7 +163,21 @@ TEST(FindRuts, NeedsMetres) {
   input.calibration.reset();
   const Cells cells = make_cells(lane.transformed, {}, 0, 2, 1);
   const SurfaceCoordinates coordinates = surface_coordinates(cells, input, 1);
-  EXPECT_TRUE(find_ruts(cells, coordinates, fit_road_surface(cells, coordinates, 1), 1).empty());
+  EXPECT_TRUE(find_ruts(cells, coordinates, fit_road_surface(cells, coordinates, 1), 0, 1).empty());
+}
+
+/// A camera whose picture has the road across it: ruts run along x.
+TEST(FindDamage, FollowsYawOfMount) {
+  const Lane lane([](double x, double y) { return rut(y, x, 1.7, 0, 0.7, 0.02); });
+  EXPECT_EQ(find_damage(lane.input()).damages.size(), 0U) << "a dip across the road, as wide as the picture";
+  for (const double yaw_deg : {90.0, -90.0, 270.0, 75.0}) {
+    DamageOptions options;
+    options.mount_yaw_deg = yaw_deg;
+    const DamageMap map = find_damage(lane.input(), options);
+    ASSERT_EQ(map.damages.size(), 1U) << yaw_deg;
+    EXPECT_EQ(map.damages[0].metrics->distress, Distress::rut) << yaw_deg;
+    EXPECT_NEAR(map.damages[0].metrics->max_depth_m.value, 0.02, 0.003) << yaw_deg;
+  }
 }
 
 /// Two ruts are the larger part of what is seen: the surface lies on what is left of the road.

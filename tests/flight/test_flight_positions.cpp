@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -43,6 +44,39 @@ TEST(FlightPositions, StationStandsStillWithCamera) {
   EXPECT_NEAR(station_m(299), 10, 0.05);
   EXPECT_NEAR(station_m(399), 19.9, 0.1);
   for (int i = 1; i < frames; ++i) EXPECT_GE(station_m(i), station_m(i - 1)) << i;
+}
+
+// A receiver whose fixes wander by metres while the camera stands at a traffic light for 30 s, as the poses tell.
+TEST(FlightPositions, StationIsNotThatOfWanderingFixes) {
+  constexpr double north_m = 111132.0;
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "wandering_track.csv";
+  std::ofstream text(file);
+  text << "time,lat,lon\n";
+  const auto moved_m = [](int i) { return i < 10 ? 1.0 * i : i < 40 ? 10.0 : i - 30.0; };
+  for (int i = 0; i < 50; ++i) {
+    const double fix_m = moved_m(i) + (i > 10 && i < 40 ? 2 * std::sin(i) : 0);
+    char line[80];
+    std::snprintf(line, sizeof line, "%d,%.10f,9\n", i, 45 + fix_m / north_m);
+    text << line;
+  }
+  text.close();
+  TrackSettings settings;
+  settings.file = file.string();
+  const auto last_station_m = [&](bool has_poses) {
+    FlightPositions positions(settings);
+    for (int i = 0; i < 50; ++i) {
+      io::FlightFrame frame;
+      frame.index = i;
+      frame.time_s = i;
+      frame.height_m = 1.5;
+      if (has_poses) frame.pose = {0, {1, 0, 0, 0, 0, 0, -1, 1.5, 0, 1, 0, moved_m(i)}};
+      positions.add(frame, {});
+    }
+    return positions.frames().back().station_m;
+  };
+  EXPECT_NEAR(last_station_m(true), 19, 0.1);
+  EXPECT_GT(last_station_m(false), 40);
+  std::filesystem::remove(file);
 }
 
 // A camera that drives north and looks to the right sees a hole 3 m before it, which is no farther along the way, and 1

@@ -1,21 +1,25 @@
 // A live run from its source to its end, with all of its threads.
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "calibration_yaml.hpp"
 #include "live/live_command.hpp"
 #include "live/live_session.hpp"
 #include "roadstereo/error.hpp"
-#include "synth_files.hpp"
+#include "roadstereo/io/calibration_file.hpp"
 #include "tests/live/live_test.hpp"
 
 namespace roadstereo::cli {
@@ -79,6 +83,53 @@ TEST_F(LiveSessionFiles, UnstartedSessionLeavesNoRecording) {
     const LiveSession session(options, [] { return source_of({1, 0.001, false, "", -1}); });
   }
   EXPECT_TRUE(files_in(folder_).empty());
+}
+
+/// `inspect` of the recording finds what `live` was given, under whatever name, in one file or in two.
+TEST_F(LiveSessionFiles, RecordsCalibrationWithPairs) {
+  io::StereoRig rig;
+  rig.left_matrix = {700.5, 0, 320.25, 0, 701.5, 180.75, 0, 0, 1};
+  rig.right_matrix = {702.5, 0, 318.25, 0, 703.5, 178.75, 0, 0, 1};
+  rig.left_distortion = {-0.1, 0.02, 0.001, -0.002, 0.003};
+  rig.right_distortion = {-0.2, 0.03, 0.002, -0.001, 0.004};
+  rig.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  rig.translation_m = {-0.12, 0.001, -0.002};
+  rig.width = 640;
+  rig.height = 360;
+  const std::string text = opencv_yaml(rig);
+  const std::size_t poses = text.find("R: ");
+  write("rig.yaml", text);
+  write("intrinsics.yml", text.substr(0, poses));
+  write("extrinsics.yml", "%YAML:1.0\n---\n" + text.substr(poses));
+  const auto path = [&](const char* name) { return (folder_ / name).string(); };
+  for (const std::vector<std::string>& files :
+       {std::vector{path("rig.yaml")}, std::vector{path("intrinsics.yml"), path("extrinsics.yml")}}) {
+    LiveOptions options;
+    options.calibration = files;
+    options.record = path("rec");
+    const LiveSession session(options, [] { return source_of({1, 0.001, false, "", -1}); });
+    const io::CalibrationFile recorded = io::read_calibration(path("rec/calibration.yaml"));
+    ASSERT_TRUE(recorded.rig);
+    EXPECT_EQ(recorded.rig->left_matrix, rig.left_matrix);
+    EXPECT_EQ(recorded.rig->right_matrix, rig.right_matrix);
+    EXPECT_EQ(recorded.rig->left_distortion, rig.left_distortion);
+    EXPECT_EQ(recorded.rig->right_distortion, rig.right_distortion);
+    EXPECT_EQ(recorded.rig->translation_m, rig.translation_m);
+    EXPECT_FALSE(recorded.rig->fisheye);
+    EXPECT_EQ(recorded.rig->width, 640);
+  }
+}
+
+TEST(CalibrationYaml, KeepsDisparityOffset) {
+  StereoCalibration calibration = small_flight().calibration;
+  calibration.disparity_offset_px = 12.5;
+  const auto file = std::filesystem::temp_directory_path() / ("roadstereo-offset-" + std::to_string(::getpid()));
+  std::ofstream(file) << plain_yaml(calibration);
+  const auto read = io::read_calibration(file.string()).rectified;
+  std::filesystem::remove(file);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->disparity_offset_px, 12.5);
+  EXPECT_EQ(read->focal_px, calibration.focal_px);
 }
 
 TEST_F(LiveSessionFiles, FollowsCamera) {

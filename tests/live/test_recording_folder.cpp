@@ -34,18 +34,17 @@ Frame deep_frame() {
 }
 
 TEST_F(RecordingFolderFiles, KeepEverySample) {
-  write("cal.yaml", "focal_px: 1\n");
   const io::SourcePair pair = frames_pair();
   {
-    RecordingFolder folder(folder_ / "rec", {(folder_ / "cal.yaml").string()});
+    RecordingFolder folder(folder_ / "rec", "focal_px: 1\n");
     folder.write({pair.left, pair.right, 1700000000.25});
     folder.write({deep_frame(), deep_frame(), 1700000000.5});
   }
   EXPECT_EQ(files_in(folder_ / "rec"),
-            (std::set<std::string>{"cal.yaml", "times.txt", "left/000000.png", "left/000001.png", "right/000000.png",
-                                   "right/000001.png"}));
+            (std::set<std::string>{"calibration.yaml", "times.txt", "left/000000.png", "left/000001.png",
+                                   "right/000000.png", "right/000001.png"}));
   EXPECT_EQ(read_text(folder_ / "rec/times.txt"), "1700000000.250000\n1700000000.500000\n");
-  EXPECT_EQ(read_text(folder_ / "rec/cal.yaml"), "focal_px: 1\n");
+  EXPECT_EQ(read_text(folder_ / "rec/calibration.yaml"), "focal_px: 1\n");
   EXPECT_EQ(io::read_frame((folder_ / "rec/left/000000.png").string()).bytes, pair.left.bytes);
   EXPECT_EQ(io::read_frame((folder_ / "rec/right/000000.png").string()).bytes, pair.right.bytes);
   EXPECT_EQ(io::read_frame((folder_ / "rec/left/000001.png").string()).bytes, deep_frame().bytes);
@@ -99,24 +98,13 @@ TEST_F(RecordingFolderFiles, KillLosesLastPairOnly) {
 }
 
 TEST_F(RecordingFolderFiles, AreNotOverwritten) {
-  RecordingFolder(folder_ / "rec", {});
+  RecordingFolder(folder_ / "rec", "focal_px: 1\n");
   EXPECT_TRUE(files_in(folder_ / "rec").empty()) << "without a pair nothing stays";
   {
     RecordingFolder folder(folder_ / "rec", {});
     folder.write({deep_frame(), deep_frame(), 1});
   }
   EXPECT_THROW(RecordingFolder(folder_ / "rec", {}), Error);
-}
-
-TEST_F(RecordingFolderFiles, CalibrationsOfEqualNameAreKeptApart) {
-  for (const char* side : {"a", "b"}) {
-    std::filesystem::create_directories(folder_ / side);
-    write(std::string(side) + "/info.yaml", side);
-  }
-  const RecordingFolder folder(folder_ / "rec",
-                               {(folder_ / "a/info.yaml").string(), (folder_ / "b/info.yaml").string()});
-  EXPECT_EQ(read_text(folder_ / "rec/left_info.yaml"), "a");
-  EXPECT_EQ(read_text(folder_ / "rec/right_info.yaml"), "b");
 }
 
 }  // namespace

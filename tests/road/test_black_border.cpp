@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "road/black_border.hpp"
@@ -29,26 +30,43 @@ TEST(BlackBorder, IsFoundOnAllSidesAndOfAnyShape) {
     const int bend = (v - 60) * (v - 60) / 180;
     return u < 4 + bend || u >= 190 - bend || v < 10;
   };
-  Image<std::uint8_t> found;
-  ASSERT_TRUE(find_black_border(picture_with(outside), {}, found));
+  const GreyImage grey = picture_with(outside);
+  const PictureMask found(grey, {});
+  ASSERT_TRUE(found.has_border());
   for (int v = 0; v < picture_height; ++v) {
-    for (int u = 0; u < picture_width; ++u) ASSERT_EQ(found(u, v) != 0, outside(u, v)) << u << ", " << v;
+    for (int u = 0; u < picture_width; ++u) ASSERT_EQ(found.view()(u, v) != 0, outside(u, v)) << u << ", " << v;
   }
 }
 
 TEST(BlackBorder, DarkPlacesInsidePictureAreNone) {
   const auto pothole = [](int u, int v) { return std::abs(u - 90) < 30 && std::abs(v - 70) < 20; };
-  Image<std::uint8_t> found;
-  EXPECT_FALSE(find_black_border(picture_with(pothole), {}, found));
+  const GreyImage grey = picture_with(pothole);
+  EXPECT_FALSE(PictureMask(grey, {}).has_border());
+}
+
+/// A road at dusk, or of 12 bits in 16 that are taken for 16: everything is below three levels.
+TEST(BlackBorder, DarkPictureIsNone) {
+  GreyImage grey(picture_width, picture_height);
+  for (int v = 0; v < picture_height; ++v) {
+    for (int u = 0; u < picture_width; ++u) grey(u, v) = static_cast<std::int16_t>(20 + (7 * u + 3 * v) % 20);
+  }
+  EXPECT_FALSE(PictureMask(grey, {}).has_border());
+  for (int v = 0; v < picture_height; ++v) std::fill_n(grey.row(v), 12, std::int16_t{0});
+  const PictureMask found(grey, {});
+  ASSERT_TRUE(found.has_border());
+  EXPECT_EQ(found.view()(11, 50), 255);
+  EXPECT_EQ(found.view()(12, 50), 0);
 }
 
 TEST(BlackBorder, KeepsMask) {
-  Image<std::uint8_t> mask(picture_width, picture_height, 0), found;
+  Image<std::uint8_t> mask(picture_width, picture_height, 0);
   mask(100, 60) = 1;
-  ASSERT_TRUE(find_black_border(picture_with([](int u, int) { return u < 8; }), mask, found));
-  EXPECT_EQ(found(100, 60), 255);
-  EXPECT_EQ(found(7, 60), 255);
-  EXPECT_EQ(found(8, 60), 0);
+  const GreyImage grey = picture_with([](int u, int) { return u < 8; });
+  const PictureMask found(grey, mask);
+  ASSERT_TRUE(found.has_border());
+  EXPECT_EQ(found.view()(100, 60), 255);
+  EXPECT_EQ(found.view()(7, 60), 255);
+  EXPECT_EQ(found.view()(8, 60), 0);
 }
 
 }  // namespace

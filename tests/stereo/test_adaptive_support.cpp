@@ -83,6 +83,8 @@ TEST(AdaptiveSupport, DownsamplingAveragesNoise) {
   EXPECT_DOUBLE_EQ(downsampled_correlation(0.5, 2), 0.8);  // signal to noise 1, and 4 afterwards
   EXPECT_DOUBLE_EQ(downsampled_correlation(0.9, 1), 0.9);
   EXPECT_EQ(downsampled_correlation(0, 2), 0);
+  EXPECT_DOUBLE_EQ(full_size_correlation(0.8, 2), 0.5);
+  EXPECT_EQ(full_size_correlation(0, 2), 0);
 }
 
 TEST(AdaptiveSupport, LeavesOptionsWithoutNoiseOrKnowledge) {

@@ -2,8 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "calibration_yaml.hpp"
 #include "roadstereo/io/image_file.hpp"
-#include "synth_files.hpp"
 
 namespace roadstereo::cli {
 

@@ -86,10 +86,10 @@ DriveCounts run_drive(const Drive& drive, const MethodSettings& settings) {
       if (!pipeline) {
         PipelineOptions options = preset("default");
         options.threads = settings.threads;
-        options.white_level = source.white_level();
         apply_settings(settings.settings, options);
         pipeline.emplace(options, source.calibration());
       }
+      if (pair->white_level > 0) pipeline->set_white_level(pair->white_level);
       const RoadStatus status = pipeline->process(pair->left.view(), pair->right.view()).road.status;
       ++(status == RoadStatus::tracked ? counts.tracked : status == RoadStatus::none ? counts.none : counts.found);
       counts.damages += static_cast<int>(pipeline->find_damage().damages.size());

@@ -107,6 +107,9 @@ Json inputs_json(const FlightSettings& settings, const io::StaticMaskRecord& sta
   return {{"source", source},
           {"calibration", calibration},
           {"mask", mask},
+          {"severity", settings.processing.severity == ProcessingSettings().severity
+                           ? settings.processing.severity
+                           : relative(settings.processing.severity)},
           {"rig_bias", settings.processing.rig_bias.empty() ? "" : relative(settings.processing.rig_bias)},
           {"layout", settings.source_settings.layout},
           {"topics", settings.source_settings.topics},

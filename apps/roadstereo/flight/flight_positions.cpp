@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/degrees.hpp"
+#include "core/same_view.hpp"
 
 namespace roadstereo::cli {
 
@@ -53,7 +54,8 @@ void FlightPositions::add(const io::FlightFrame& frame, const std::vector<std::i
   geo.time_s = frame.time_s + offset_s_;
   if (std::isfinite(geo.time_s)) geo.position = io::position_at(track_, geo.time_s);
   if (geo.position) {
-    geo.station_m = station_at(*geo.position);
+    if (has_moved(frame)) update_station(*geo.position);
+    geo.station_m = station_m_;
     ++located_;
   }
   geo.footprint_deg = on_earth(frame.footprint_m, geo.position);
@@ -77,9 +79,17 @@ double FlightPositions::distance_ahead_m(const Damage& damage) const {
   return forward_m * std::cos(mount_yaw_rad_) - right_m * std::sin(mount_yaw_rad_);
 }
 
+/// Whether the camera has left the place of an earlier frame, by the poses; true without them.
+bool FlightPositions::has_moved(const io::FlightFrame& frame) {
+  const bool stands = frame.pose && view_from_ && frame.pose->piece == view_from_->piece &&
+                      is_same_view(view_from_->road_to_world, frame.pose->road_to_world, frame.height_m);
+  if (!stands) view_from_ = frame.pose;
+  return !stands;
+}
+
 /// Distance along the track. Steps are taken from the last position that is well away, so that the noise of the
-/// positions does not add up while the camera stands.
-double FlightPositions::station_at(const io::GeoPosition& position) {
+/// positions does not add up while the camera stands and nobody knows it.
+void FlightPositions::update_station(const io::GeoPosition& position) {
   constexpr double min_step_m = 0.5;
   const double step_m = last_ ? io::distance_m(*last_, position) : min_step_m;
   const double station_m = last_ ? last_station_m_ + step_m : 0;
@@ -87,7 +97,7 @@ double FlightPositions::station_at(const io::GeoPosition& position) {
     last_ = position;
     last_station_m_ = station_m;
   }
-  return station_m_ = std::max(station_m_, station_m);
+  station_m_ = std::max(station_m_, station_m);
 }
 
 void FlightPositions::locate(io::RoadDamage& damage) const {

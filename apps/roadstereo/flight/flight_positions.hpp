@@ -40,7 +40,8 @@ class FlightPositions {
   std::vector<StagedFile> files(std::span<const io::RoadDamage> damages, bool with_candidates) const;
 
  private:
-  double station_at(const io::GeoPosition& position);
+  bool has_moved(const io::FlightFrame& frame);
+  void update_station(const io::GeoPosition& position);
   double distance_ahead_m(const Damage& damage) const;
 
   double offset_s_;
@@ -49,9 +50,10 @@ class FlightPositions {
   std::vector<io::GeoFrame> frames_;
   std::vector<io::GeoSighting> sightings_;
   std::size_t located_ = 0;
-  double station_m_ = 0;                 ///< of the last frame with a position
-  std::optional<io::GeoPosition> last_;  ///< position that steps are taken from
-  double last_station_m_ = 0;            ///< its station
+  double station_m_ = 0;                     ///< of the last frame with a position
+  std::optional<io::GeoPosition> last_;      ///< position that steps are taken from
+  double last_station_m_ = 0;                ///< its station
+  std::optional<io::FlightPose> view_from_;  ///< first pose at the place where the camera is
 };
 
 }  // namespace roadstereo::cli

@@ -80,6 +80,7 @@ FlightPlan resolve(const FlightSettings& settings) {
   settings.validate();
   FlightPlan plan;
   plan.options = make_options(settings);
+  if (settings.track.mount_yaw_deg != 0) plan.options.damage.mount_yaw_deg = settings.track.mount_yaw_deg;
   plan.mask = read_ignored(settings);
   plan.auto_mask = settings.auto_mask && settings.mask.empty();
   plan.find_white_level = !sets_white_level(settings.processing);

@@ -73,7 +73,7 @@ struct FlightPlan {
   PipelineOptions options;
   Image<std::uint8_t> mask;      ///< not 0 left out; empty: none
   bool auto_mask = true;         ///< leaves out what never moves
-  bool find_white_level = true;  ///< determines it from the first valid pair of a 16-bit source
+  bool find_white_level = true;  ///< determines it from the pairs of a 16-bit source
   io::SourceOptions source;
   std::vector<FrameFile> write;
   bool mcap = false;  ///< writes flight.mcap

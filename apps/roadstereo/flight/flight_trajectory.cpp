@@ -126,7 +126,7 @@ FlightTrajectory::FlightTrajectory(const StereoCalibration& calibration, const s
 
 std::optional<io::RosPose> FlightTrajectory::add(const io::FlightFrame& frame, const FrameResult& result) {
   const auto index = static_cast<int>(frame.index);
-  const FramePose& pose = odometry_.add(index, result);
+  const FramePose& pose = odometry_.add(index, result, frame.time_s);
   times_s_.push_back(frame.time_s);
   std::optional<DisparityPlane> road;
   if (result.roll_found) road = result.geometry.plane;

@@ -1,5 +1,6 @@
 #include "flight/rectified_source.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "roadstereo/error.hpp"
@@ -27,11 +28,8 @@ RectifiedSource::RectifiedSource(std::unique_ptr<io::FrameSource> source, const 
   }
 }
 
-/// Determines the white level and the rectification maps from the first valid pair.
+/// Determines the rectification maps from the first valid pair.
 void RectifiedSource::prepare(const io::SourcePair& first) {
-  if (!white_known_ && first.left.sample == SampleType::u16 && first.right.sample == SampleType::u16) {
-    white_level_ = io::find_white_level(first.left.view(), first.right.view());
-  }
   if (file_) {
     file_->select_size(first.left.width, first.left.height, file_name_);
     if (!calibration_) calibration_ = file_->rectified;
@@ -43,27 +41,17 @@ void RectifiedSource::prepare(const io::SourcePair& first) {
   prepared_ = true;
 }
 
-void RectifiedSource::set_white_level(double level) {
-  white_level_ = level;
-  white_known_ = true;
-}
-
-/// What is clipped at a white level that the first, dark pair suggested is no measurement.
-void RectifiedSource::require_white_level(const io::SourcePair& pair) const {
-  if (!checks_white_ || white_level_ <= 0 || pair.left.sample != SampleType::u16 ||
-      pair.right.sample != SampleType::u16)
-    return;
-  const double white = io::find_white_level(pair.left.view(), pair.right.view());
-  if (white <= white_level_) return;
-  fail("the image has samples above ", white_level_,
-       ", the white level found in the first pair; set it with --set white_level=", white);
+void RectifiedSource::find_white_level(io::SourcePair& pair) {
+  if (!finds_white_ || pair.left.sample != SampleType::u16 || pair.right.sample != SampleType::u16) return;
+  white_level_ = std::max(white_level_, io::find_white_level(pair.left.view(), pair.right.view()));
+  pair.white_level = white_level_;
 }
 
 void RectifiedSource::rectify(io::SourcePair& pair) {
   if (!pair.error.empty()) return;
   try {
     if (!prepared_) prepare(pair);
-    require_white_level(pair);
+    find_white_level(pair);
     if (rectifier_) {
       io::RectifiedPair rectified = rectifier_->rectify(pair.left, pair.right);
       pair.left = std::move(rectified.left);

@@ -19,7 +19,8 @@ class RectifiedSource {
   /// naming a file that is not a calibration.
   RectifiedSource(std::unique_ptr<io::FrameSource> source, const std::vector<std::string>& calibration);
 
-  /// Returns the next pair, rectified, or nullopt at the end. `error` is set if it cannot be rectified.
+  /// Returns the next pair, rectified, or nullopt at the end. `error` is set if it cannot be rectified. The white level
+  /// of 16-bit pairs is that of the brightest one so far (io::find_white_level): a recording may begin in the dark.
   std::optional<io::SourcePair> next();
 
   /// Rectifies a pair of the source in place; sets its `error` on failure.
@@ -32,17 +33,14 @@ class RectifiedSource {
   const std::optional<StereoCalibration>& calibration() const { return calibration_; }
   const std::string& calibration_format() const { return format_; }  ///< empty without a calibration
 
-  /// Sample value of white, determined from the first valid pair of a 16-bit source; 0: maximum of the sample type.
-  double white_level() const { return white_level_; }
-
-  /// Sets the white level instead of determining it.
-  void set_white_level(double level);
-  /// Accepts samples above the white level, which somebody else sets.
-  void ignore_white_level() { checks_white_ = false; }
+  /// The white level that earlier pairs have needed.
+  void set_white_level(double level) { white_level_ = level; }
+  /// Leaves SourcePair::white_level unknown.
+  void ignore_white_level() { finds_white_ = false; }
 
  private:
   void prepare(const io::SourcePair& first);
-  void require_white_level(const io::SourcePair& pair) const;
+  void find_white_level(io::SourcePair& pair);
 
   std::unique_ptr<io::FrameSource> source_;
   std::optional<io::CalibrationFile> file_;
@@ -51,8 +49,7 @@ class RectifiedSource {
   std::optional<StereoCalibration> calibration_;
   std::optional<io::Rectifier> rectifier_;
   double white_level_ = 0;
-  bool white_known_ = false;
-  bool checks_white_ = true;
+  bool finds_white_ = true;
   bool prepared_ = false;
 };
 

@@ -169,9 +169,8 @@ void FlightPipeline::match() {
   while (std::optional<io::SourcePair> pair = pairs_.take()) {
     std::optional<JobPointer> job = free_.take();
     if (!job) break;
-    if (!pipeline && pair->error.empty()) {  // white level and size are known now
+    if (!pipeline && pair->error.empty()) {  // the size is known now
       PipelineOptions options = flight_.plan.options;
-      if (flight_.plan.find_white_level) options.white_level = flight_.source.white_level();
       const Image<std::uint8_t>& mask = flight_.plan.mask;
       require_mask_size(settings_, mask, pair->left.width, pair->left.height);
       if (options.rig_bias) {
@@ -184,6 +183,7 @@ void FlightPipeline::match() {
       warm_up(*pipeline, *pair);
       if (last_ && (sequence == done || !settings_.trajectory)) pipeline->restore(last_->pipeline_state);
     }
+    if (pipeline && pair->white_level > 0) pipeline->set_white_level(pair->white_level);
     const bool is_again = !settings_.trajectory && last_ && pair->index <= last_->index;
     if (is_again && from_first_) {
       if (pair->error.empty()) auto_mask.look(pair->left.view(), pair->right.view(), pipeline->options().white_level);
@@ -233,7 +233,7 @@ const FramePose& FlightPipeline::link(FlightJob& job, const StereoCalibration& c
   const int threads = flight_.plan.options.threads;
   if (!settings_.trajectory) {
     if (!odometry_) odometry_.emplace(calibration, OdometryOptions{.kept_frames = 1, .threads = threads});
-    return odometry_->add(static_cast<int>(job.frame.index), job.result);
+    return odometry_->add(static_cast<int>(job.frame.index), job.result, job.frame.time_s);
   }
   if (!flight_.trajectory) flight_.trajectory.emplace(calibration, flight_.folder.path() / ".keyframes", threads);
   job.pose = flight_.trajectory->add(job.frame, job.result);

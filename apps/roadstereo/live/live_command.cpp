@@ -102,8 +102,8 @@ constexpr const char* footer =
     R"(Processes the newest pair: pairs that arrive during processing are dropped and counted, and pairs older than --max-age
 are not processed. A recording is played back in real time, at its own times or at --rate. A lost camera is reconnected.
 
---record DIR writes the raw pairs losslessly as left/NNNNNN.png and right/NNNNNN.png with times.txt and the calibration,
-for roadstereo inspect DIR. It never delays processing: if the disk is too slow, pairs are skipped and counted.
+--record DIR writes the raw pairs losslessly as left/NNNNNN.png and right/NNNNNN.png with times.txt and
+calibration.yaml, for roadstereo inspect DIR. It never delays processing: if the disk is too slow, pairs are skipped and counted.
 
 --serve PORT serves a web page on this machine: left image with outlined damage, transformed disparity, roll, height,
 frame rate, latency, age, and the list of damages. With a HOST (0.0.0.0: all addresses) other machines can open it with

@@ -1,12 +1,14 @@
 #include "live/live_session.hpp"
 
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <utility>
 
+#include "calibration_yaml.hpp"
 #include "live/recording_folder.hpp"
 #include "lower_priority.hpp"
 #include "roadstereo/error.hpp"
-#include "synth_files.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -14,8 +16,8 @@ namespace {
 /// A source without pairs that keeps the calibration while the real source is reopened.
 class CalibrationOnly final : public io::FrameSource {
  public:
-  explicit CalibrationOnly(const io::FrameSource& source)
-      : calibration_(source.calibration()), description_(source.description()) {}
+  CalibrationOnly(std::optional<io::CalibrationFile> calibration, std::string description)
+      : calibration_(std::move(calibration)), description_(std::move(description)) {}
 
   std::optional<io::SourcePair> next() override { return std::nullopt; }
   void skip(std::int64_t) override {}
@@ -28,14 +30,34 @@ class CalibrationOnly final : public io::FrameSource {
   std::string description_;
 };
 
+/// The calibration of a recording, readable without the source: the file as it is, or what several say together.
+std::string recorded_calibration(const std::vector<std::string>& files, const io::FrameSource& source,
+                                 const std::optional<io::CalibrationFile>& own) {
+  const std::string file = files.size() == 1 ? files[0] : files.empty() ? source.calibration_file() : std::string();
+  if (!file.empty()) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  const auto both = files.empty() ? own : io::read_calibration(files[0], files[1]);
+  if (!both) return {};
+  return both->rectified ? plain_yaml(*both->rectified) : opencv_yaml(both->rig.value());
+}
+
 }  // namespace
 
 LiveSession::LiveSession(const LiveOptions& options, SourceOpener opener) : board_(options.max_age_s) {
   std::unique_ptr<io::FrameSource> source = opener();
   description_ = source->description();
-  auto rectifier = std::make_unique<RectifiedSource>(std::make_unique<CalibrationOnly>(*source), options.calibration);
+  std::optional<io::CalibrationFile> own;
+  if (options.calibration.empty()) own = source->calibration();
+  auto rectifier = std::make_unique<RectifiedSource>(std::make_unique<CalibrationOnly>(own, source->description()),
+                                                     options.calibration);
   processing_ = std::make_unique<Processing>(options.processing, std::move(rectifier), board_, captured_);
-  if (!options.record.empty()) start_recorder(options, *source);
+  if (!options.record.empty()) {
+    const auto folder =
+        std::make_shared<RecordingFolder>(options.record, recorded_calibration(options.calibration, *source, own));
+    recorder_ = std::make_unique<Recorder>([folder](const RecordedPair& pair) { folder->write(pair); }, board_);
+  }
   capture_ = std::make_unique<Capture>(std::move(source), std::move(opener), options.capture, board_, captured_,
                                        recorder_.get());
 }
@@ -67,15 +89,6 @@ void LiveSession::start_threads() {
     captured_.close();
     finished_ = true;
   });
-}
-
-void LiveSession::start_recorder(const LiveOptions& options, const io::FrameSource& source) {
-  const auto folder = std::make_shared<RecordingFolder>(options.record, options.calibration);
-  const std::optional<io::CalibrationFile> own = source.calibration();
-  if (options.calibration.empty() && own && own->rectified) {
-    folder->add_calibration("calibration.yaml", plain_yaml(*own->rectified));
-  }
-  recorder_ = std::make_unique<Recorder>([folder](const RecordedPair& pair) { folder->write(pair); }, board_);
 }
 
 /// Stops the threads in the order of the data flow, so that pairs already read are finished.

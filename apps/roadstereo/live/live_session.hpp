@@ -49,8 +49,6 @@ class LiveSession {
   void end();
 
  private:
-  void start_recorder(const LiveOptions& options, const io::FrameSource& source);
-
   void start_threads();
   void join();
 

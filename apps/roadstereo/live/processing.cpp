@@ -18,10 +18,9 @@ Processing::Processing(const ProcessingOptions& options, std::unique_ptr<Rectifi
   if (!options_.find_white_level) rectifier_->ignore_white_level();
 }
 
-/// Creates the pipeline on first use, when the white level is known.
+/// Creates the pipeline on first use, when the calibration is known.
 Pipeline& Processing::pipeline() {
   if (!pipeline_) {
-    if (options_.find_white_level) options_.pipeline.white_level = rectifier_->white_level();
     pipeline_.emplace(options_.pipeline, rectifier_->calibration());
   }
   return *pipeline_;
@@ -41,6 +40,7 @@ std::optional<Processing::Matched> Processing::match(CapturedPair captured) {
   Matched matched;
   const FrameView left = captured.pair.left.view(), right = captured.pair.right.view();
   try {
+    if (captured.pair.white_level > 0) pipeline().set_white_level(captured.pair.white_level);
     if (auto_mask_.apply(pairs_++, left, right, pipeline())) board_.set_static_mask(auto_mask_.record());
     pipeline().process(left, right, matched.result);
   } catch (const SystemError&) {
@@ -78,8 +78,9 @@ void Processing::match() {
 void Processing::publish_messages(const Matched& matched, const DamageMap& map) {
   if (!options_.dds_domain) return;
   if (!messages_) messages_.emplace(*options_.dds_domain, matched.calibration);
-  messages_->publish(matched.captured.pair.left.view(), options_.pipeline.white_level, matched.captured.clock_s,
-                     matched.result, map);
+  const io::SourcePair& pair = matched.captured.pair;
+  const double white_level = pair.white_level > 0 ? pair.white_level : options_.pipeline.white_level;
+  messages_->publish(pair.left.view(), white_level, matched.captured.clock_s, matched.result, map);
 }
 
 LiveView Processing::view_of(Matched& matched) {

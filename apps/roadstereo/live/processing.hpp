@@ -21,7 +21,7 @@ namespace roadstereo::cli {
 /// Options of Processing.
 struct ProcessingOptions {
   PipelineOptions pipeline;
-  bool find_white_level = true;             ///< determines it from the first pair of a 16-bit source
+  bool find_white_level = true;             ///< determines it from the pairs of a 16-bit source
   bool auto_mask = true;                    ///< leaves out what never moves
   std::optional<std::uint32_t> dds_domain;  ///< publishes the results there as ROS 2 messages
   bool trajectory = false;                  ///< follows the camera

@@ -5,8 +5,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -39,30 +37,13 @@ void require_no_recording(const fs::path& folder) {
   }
 }
 
-/// Names of the copies: those of the files, with the side as prefix if they are equal.
-std::vector<std::string> copy_names(const std::vector<std::string>& files) {
-  std::vector<std::string> names;
-  names.reserve(files.size());
-  for (const std::string& file : files) names.push_back(fs::path(file).filename().string());
-  if (names.size() == 2 && names[0] == names[1]) {
-    names[0] = "left_" + names[0];
-    names[1] = "right_" + names[1];
-  }
-  return names;
-}
-
 }  // namespace
 
-RecordingFolder::RecordingFolder(fs::path folder, const std::vector<std::string>& calibration)
-    : folder_(std::move(folder)) {
+RecordingFolder::RecordingFolder(fs::path folder, const std::string& calibration) : folder_(std::move(folder)) {
   require_no_recording(folder_);
   make_folder(folder_ / "left");
   make_folder(folder_ / "right");
-  const std::vector<std::string> names = copy_names(calibration);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    std::ifstream file(calibration[i], std::ios::binary);
-    add_calibration(names[i], {std::istreambuf_iterator<char>(file), {}});
-  }
+  if (!calibration.empty()) write_file_atomically(folder_ / "calibration.yaml", bytes_of(calibration));
   const fs::path times = folder_ / "times.txt";
   times_ = ::open(times.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
   if (times_ < 0) fail("cannot write ", times.string(), ": ", std::generic_category().message(errno));
@@ -72,11 +53,7 @@ RecordingFolder::~RecordingFolder() {
   ::close(times_);
   if (pairs_ > 0) return;
   std::error_code ignored;  // nothing was recorded: the folder can be reused
-  for (const char* name : {"left", "right", "times.txt"}) fs::remove(folder_ / name, ignored);
-}
-
-void RecordingFolder::add_calibration(const std::string& name, const std::string& text) {
-  write_file_atomically(folder_ / name, bytes_of(text));
+  for (const char* name : {"left", "right", "times.txt", "calibration.yaml"}) fs::remove(folder_ / name, ignored);
 }
 
 /// Writes a line atomically, too.

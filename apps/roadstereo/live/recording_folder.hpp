@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "live/clock.hpp"
 #include "live/recorder.hpp"
@@ -11,18 +10,15 @@
 namespace roadstereo::cli {
 
 /// Writes a recording for `roadstereo inspect`: left/NNNNNN.png, right/NNNNNN.png, times.txt (seconds, one per line)
-/// and the calibration. Pairs are written atomically, and are on the disk about a second later.
+/// and calibration.yaml. Pairs are written atomically, and are on the disk about a second later.
 class RecordingFolder {
  public:
-  /// Creates the folder if it is missing and copies the calibration files to it. Throws Error naming it if it cannot be
-  /// written to or already contains a recording.
-  RecordingFolder(std::filesystem::path folder, const std::vector<std::string>& calibration);
+  /// Creates the folder if it is missing; `calibration`: text of its file, empty without one. Throws Error naming the
+  /// folder if it cannot be written to or already contains a recording.
+  RecordingFolder(std::filesystem::path folder, const std::string& calibration);
   ~RecordingFolder();
   RecordingFolder(const RecordingFolder&) = delete;
   RecordingFolder& operator=(const RecordingFolder&) = delete;
-
-  /// Writes a calibration that has no file.
-  void add_calibration(const std::string& name, const std::string& text);
 
   /// Writes a pair. Throws SystemError naming the file on failure; a partly written pair is removed.
   void write(const RecordedPair& pair);

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "core/order_statistics.hpp"
+#include "core/round_length.hpp"
+#include "core/same_view.hpp"
 #include "flight/rectified_source.hpp"
 #include "inspect_flight.hpp"
 #include "io/geo/utc_time.hpp"
@@ -24,6 +26,8 @@
 
 namespace roadstereo::cli {
 namespace {
+
+constexpr double max_raster_cells = 8e9;  ///< about twenty minutes of writing
 
 /// A recording with its poses.
 struct Pass {
@@ -44,6 +48,7 @@ class MapBuilder {
       frames += static_cast<std::int64_t>(passes.back().poses.size());
     }
     restore();
+    first_poses_ = &passes.front().poses;
     Progress progress(frames, state_.frames, plan_.quiet);
     while (state_.pass < static_cast<int>(passes.size())) {
       add_pass(passes[static_cast<std::size_t>(state_.pass)], progress);
@@ -88,6 +93,7 @@ class MapBuilder {
     state_.next_frame = 0;
     state_.day.reset();
     state_.piece = -1;
+    state_.height_m = 0;
     state_.white_level = 0;
     state_.pipeline.reset();
   }
@@ -128,7 +134,6 @@ class MapBuilder {
   }
 
   void add_pass(Pass& pass, Progress& progress) {
-    constexpr std::int64_t frames_per_save = 16;
     const MapPass& from = plan_.passes[static_cast<std::size_t>(state_.pass)];
     if (state_.next_frame == 0) tell_missing_poses(pass, from);
     if (state_.white_level > 0) pass.source->set_white_level(state_.white_level);
@@ -139,6 +144,10 @@ class MapBuilder {
       if (stop_.wait(0)) {
         save();
         throw Interrupted{"interrupted; continue with --resume"};
+      }
+      if (stands(pose->second)) {
+        count_frame(pose->first + 1, progress);
+        continue;
       }
       pass.source->source().skip(pose->first - next);
       const std::optional<io::SourcePair> pair = pass.source->next();
@@ -153,10 +162,20 @@ class MapBuilder {
         require_extent(pass, from);
         has_extent = true;
       }
-      state_.next_frame = next;
-      progress.frame_done();
-      if (++state_.frames % frames_per_save == 0) save();
+      count_frame(next, progress);
     }
+  }
+
+  /// Whether the camera has stood since the last mapped frame: the same errors again would count as another opinion.
+  bool stands(const FramePose& pose) const {
+    return pose.piece == state_.piece && is_same_view(state_.view, pose.camera_to_world, state_.height_m);
+  }
+
+  void count_frame(std::int64_t next, Progress& progress) {
+    constexpr std::int64_t frames_per_save = 16;
+    state_.next_frame = next;
+    progress.frame_done();
+    if (++state_.frames % frames_per_save == 0) save();
   }
 
   void tell_missing_poses(const Pass& pass, const MapPass& from) {
@@ -177,6 +196,8 @@ class MapBuilder {
       }
       pipeline.emplace(begin_pass(from, source));
     }
+    if (pair.white_level > 0) pipeline->set_white_level(pair.white_level);
+    state_.white_level = pipeline->options().white_level;
     add_frame(pair, pose, *source.calibration(), *pipeline);
     state_.pipeline = pipeline->carried();
   }
@@ -192,13 +213,11 @@ class MapBuilder {
     return index;
   }
 
-  /// Called after the first valid pair: white level and size are known.
+  /// Called after the first valid pair: the size is known.
   Pipeline begin_pass(const MapPass& pass, const RectifiedSource& source) {
     if (!source.calibration()) fail("map needs --calibration");
     PipelineOptions options = pass.options;
     options.damage.min_confidence = 0;  // what one frame doubts may be clear in the map
-    if (pass.find_white_level) options.white_level = source.white_level();
-    state_.white_level = options.white_level;
     Pipeline pipeline(options, source.calibration());
     if (!pass.mask.empty()) pipeline.set_mask(pass.mask);
     if (state_.pipeline) pipeline.restore(*state_.pipeline);
@@ -223,11 +242,18 @@ class MapBuilder {
                          pose.piece != state_.piece,
                          {foot_m[0], foot_m[1]},
                          locate_damage(damage_, road, calibration, camera_to_map)};
-      map_of(*state_.day)
-          .map.add({result.disparity, result.sigma, pair.left.view(), pipeline.options().white_level, road, calibration,
-                    camera_to_map});
+      const std::size_t cells = map_of(*state_.day)
+                                    .map.add({result.disparity, result.sigma, pair.left.view(),
+                                              pipeline.options().white_level, road, calibration, camera_to_map});
+      if (cells == 0) {
+        return add_reason(
+            fmt::format("the road is too far away in some frames: a pixel covers more than {} cells of {} m",
+                        map_options_.max_footprint_cells, map_options_.cell_m));
+      }
       ++state_.mapped;
       state_.piece = pose.piece;
+      state_.height_m = ground_plane(road, calibration).height_m;
+      state_.view = pose.camera_to_world;
       journal_.append(mapped);
       add_record(std::move(mapped));
     } catch (const SystemError&) {
@@ -263,12 +289,36 @@ class MapBuilder {
     return options;
   }
 
+  /// The cell, or a larger one up to 5 cm with which rasters of the first recording do not have too many.
+  double affordable_cell_m(double suggested_m) {
+    constexpr double largest_m = 0.05, margin_m = 20;  // of road around the poses
+    std::array<double, 3> span{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto [low, high] = std::minmax_element(
+          first_poses_->begin(), first_poses_->end(), [k = 4 * axis + 3](const auto& one, const auto& other) {
+            return one.second.camera_to_world[k] < other.second.camera_to_world[k];
+          });
+      span[axis] =
+          high->second.camera_to_world[4 * axis + 3] - low->second.camera_to_world[4 * axis + 3] + 2 * margin_m;
+    }
+    std::sort(span.begin(), span.end());
+    const double least_m = std::sqrt(span[1] * span[2] / max_raster_cells);
+    double cell_m = suggested_m;
+    while (cell_m < std::min(least_m, largest_m)) cell_m = round_length(2.5 * cell_m);
+    if (cell_m > suggested_m) {
+      add_reason(fmt::format("cells of {} m instead of {} m, since the poses lie in a box of {:.0f} × {:.0f} m", cell_m,
+                             suggested_m, span[2], span[1]));
+    }
+    return cell_m;
+  }
+
   /// Sets cells and axes: those of the road under the first camera, or with --crs those of the trajectory, with an
   /// origin at a whole number of metres.
   void set_axes(const FrameResult& first, const FramePose& pose, const StereoCalibration& calibration) {
     const DisparityPlane& road = first.geometry.plane;
     const int width = first.disparity.width(), height = first.disparity.height();
-    state_.cell_m = plan_.cell_m > 0 ? plan_.cell_m : suggested_cell_m(road, calibration, width, height);
+    state_.cell_m =
+        plan_.cell_m > 0 ? plan_.cell_m : affordable_cell_m(suggested_cell_m(road, calibration, width, height));
     map_options_ = map_options(state_.cell_m);
     if (plan_.crs.empty()) {
       state_.world_to_map = compose(camera_to_road(road, calibration), inverse(pose.camera_to_world));
@@ -283,7 +333,6 @@ class MapBuilder {
   /// Throws Error if the box around the poses of a recording and what is mapped of its day has too many cells for
   /// rasters.
   void require_extent(const Pass& pass, const MapPass& from) const {
-    constexpr double max_cells = 8e9;  // about twenty minutes of writing
     std::array<std::vector<double>, 2> at;
     for (const auto& [frame, pose] : pass.poses) {
       const RigidTransform camera_to_map = compose(state_.world_to_map, pose.camera_to_world);
@@ -299,7 +348,7 @@ class MapBuilder {
       middle_m[axis] = central_median(std::vector(at[axis]));
     }
     const double cells = size_m[0] / state_.cell_m * (size_m[1] / state_.cell_m);
-    if (cells <= max_cells) return;
+    if (cells <= max_raster_cells) return;
     std::size_t farthest = 0;
     const auto distance_m = [&](std::size_t k) { return std::hypot(at[0][k] - middle_m[0], at[1][k] - middle_m[1]); };
     for (std::size_t k = 1; k < at[0].size(); ++k) {
@@ -309,7 +358,7 @@ class MapBuilder {
     fail(from.trajectory, ": its poses and what is mapped lie in a box of ",
          fmt::format("{:.0f} × {:.0f} m, which has {:.2g} cells of {} m (limit {:.0g}); frame {} is {:.0f} m from the "
                      "middle of the others: leave out what is wrong (nan), map parts, or use a larger --cell",
-                     size_m[0], size_m[1], cells, state_.cell_m, max_cells, frame, distance_m(farthest)));
+                     size_m[0], size_m[1], cells, state_.cell_m, max_raster_cells, frame, distance_m(farthest)));
   }
 
   void add_reason(const std::string& given) {
@@ -325,6 +374,7 @@ class MapBuilder {
   MapState state_;
   std::map<std::size_t, DayMap> days_;  ///< by index of their names, those with a mapped frame
   RoadMapOptions map_options_;
+  const std::map<std::int64_t, FramePose>* first_poses_ = nullptr;  ///< of the first recording
   DamageMap damage_;
 };
 

@@ -57,6 +57,8 @@ Json state_json(const MapState& state) {
           {"next_frame", state.next_frame},
           {"day", state.day ? Json(*state.day) : Json(nullptr)},
           {"piece", state.piece},
+          {"height_m", state.height_m},
+          {"view", state.view},
           {"has_pipeline", state.pipeline.has_value()},
           {"pipeline", io::flight_frame_json(pipeline)},
           {"frames", state.frames},
@@ -76,6 +78,8 @@ MapState read_state(const Json& json) {
   state.next_frame = json.at("next_frame").get<std::int64_t>();
   if (!json.at("day").is_null()) state.day = json.at("day").get<std::size_t>();
   state.piece = json.at("piece").get<int>();
+  state.height_m = json.at("height_m").get<double>();
+  state.view = json.at("view").get<RigidTransform>();
   if (json.at("has_pipeline").get<bool>()) state.pipeline = pipeline.pipeline_state;
   state.white_level = pipeline.white_level;
   state.frames = json.at("frames").get<std::int64_t>();

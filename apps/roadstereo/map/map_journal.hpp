@@ -33,6 +33,8 @@ struct MapState {
   std::int64_t next_frame = 0;     ///< of that recording
   std::optional<std::size_t> day;  ///< of that recording
   int piece = -1;                  ///< of its trajectory, of the last mapped frame
+  double height_m = 0;             ///< of the camera in that frame; 0: none was mapped
+  RigidTransform view{};           ///< its camera_to_world
   double white_level = 0;
   std::optional<PipelineState> pipeline;  ///< absent before its first valid pair
   std::int64_t frames = 0, mapped = 0;

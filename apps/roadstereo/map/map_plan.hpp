@@ -18,7 +18,7 @@ struct MapPass {
   std::string trajectory;                ///< file of the poses
   std::string crs;                       ///< of the poses of a run; empty: none, or unknown
   PipelineOptions options;
-  bool find_white_level = true;  ///< determines it from the first valid pair of a 16-bit source
+  bool find_white_level = true;  ///< determines it from the pairs of a 16-bit source
   Image<std::uint8_t> mask;      ///< not 0 left out; empty: none
   std::string day;               ///< empty: by the time of its first frame
   double time_offset_s = 0;      ///< added to the times of the frames

@@ -186,7 +186,7 @@ MapResults measure_map(const MapPlan& plan, const BuiltMap& built) {
   options.min_confidence = 0;
   std::vector<std::vector<RoadDamageRecord>> of_days;
   for (const DayMap& day : built.days) {
-    of_days.push_back(join_damage(day.sightings, find_map_damage(day.map, options), day.map, damage));
+    of_days.push_back(join_damage(day.sightings, find_map_damage(day.map, options, day.paths), day.map, damage));
     for (const auto& path : day.paths) results.lanes.push_back(measure_lane(day.map, path, {}));
   }
   results.changes = changes_between_days(built, of_days);

@@ -17,7 +17,16 @@ void reject_run_options(const MapSettings& settings) {
   };
   if (!settings.calibration.empty()) reject("--calibration");
   if (!settings.processing.settings.empty()) reject("--set");
-  if (settings.processing.preset != ProcessingSettings().preset) reject("--preset");
+  const ProcessingSettings usual;
+  if (settings.processing.preset != usual.preset) reject("--preset");
+  if (settings.processing.scope != usual.scope) reject("--scope");
+  const SourceSettings& source = settings.source_settings;
+  const SourceSettings usual_source;
+  if (source.layout != usual_source.layout) reject("--layout");
+  if (!source.topics.empty()) reject("--topics");
+  if (source.max_time_difference_ms != usual_source.max_time_difference_ms) reject("--max-time-difference");
+  if (source.rate_hz != usual_source.rate_hz) reject("--rate");
+  if (source.camera_size != usual_source.camera_size) reject("--camera-size");
 }
 
 /// The poses of a run are in its own system, whatever --crs says.
@@ -48,7 +57,10 @@ std::vector<MapPass> runs_of(const MapSettings& settings) {
       passes.back().trajectory = trajectory[passes.size() - 1];
     }
     passes.back().options.threads = settings.processing.threads;
-    passes.back().options.damage.severity = options.damage.severity;
+    if (settings.processing.engine != ProcessingSettings().engine) passes.back().options.engine = options.engine;
+    if (settings.processing.severity != ProcessingSettings().severity) {
+      passes.back().options.damage.severity = options.damage.severity;
+    }
     if (options.rig_bias) passes.back().options.rig_bias = options.rig_bias;
   }
   return passes;

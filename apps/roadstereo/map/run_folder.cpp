@@ -7,8 +7,10 @@
 
 #include "flight/flight_trajectory.hpp"
 #include "mask_file.hpp"
+#include "processing_options.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/rig_bias_file.hpp"
+#include "roadstereo/io/severity_file.hpp"
 #include "roadstereo/options.hpp"
 #include "source_options.hpp"
 
@@ -67,6 +69,9 @@ MapPass pass_of(const fs::path& folder, const Json& summary) {
   const std::string mask = inputs.at("mask").get<std::string>();
   if (!mask.empty()) pass.mask = read_mask(input_file(folder, mask), 255);
   pass.options = options_of(summary.at("options"));
+  const std::string severity = inputs.value("severity", ProcessingSettings().severity);
+  const bool is_file = severity != ProcessingSettings().severity;
+  pass.options.damage.severity = io::read_severity_scheme(is_file ? input_file(folder, severity) : severity);
   const std::string bias = inputs.at("rig_bias").get<std::string>();
   if (!bias.empty()) pass.options.rig_bias = io::read_rig_bias(input_file(folder, bias));
   pass.find_white_level = pass.options.white_level == 0;

@@ -50,9 +50,11 @@ std::vector<RoadDamage> worst_first(const std::vector<RoadDamage>& damages, bool
 /// damage if their boxes overlap after the image motion is compensated; this restarts at a frame whose road was not
 /// tracked although the frame before had one, since the image has then jumped, and frames too far apart to overlap give
 /// one damage per sighting. A rut that runs through the pictures is one damage; a pothole in it is another.
-/// A region counts as damage of the road if it is a damage in at least one frame and the two frames with the highest
+/// A region counts as damage of the road if it is a damage in at least one frame and the two views with the highest
 /// confidence agree: the mean of their log-odds is at least that of the minimum confidence. Otherwise noise in one of
-/// many frames would suffice. A region that only one frame shows is decided by that frame.
+/// many frames would suffice. A view is what successive frames show while the camera stands, by their poses; its
+/// log-odds are the mean of those of its frames. Without poses every frame is one. A region that only one view shows is
+/// decided by that view.
 class FlightInventory {
  public:
   /// `min_confidence`: DamageOptions::min_confidence, 0 … 1.
@@ -89,18 +91,22 @@ class FlightInventory {
 
   bool is_recent(const Sighting& last) const;
 
-  /// The two largest confidences of the frames that show a damage, and whether it is a damage in one of them.
+  /// Log-odds of the confidences of the views that show a damage, and whether it is a damage in one of their frames.
   struct Agreement {
-    double first = 0, second = 0;
+    std::vector<double> best{};  ///< the largest of earlier views, at most two, the larger one first
+    std::int64_t view = 0;       ///< last one
+    double sum = 0, frames = 0;  ///< of its frames
     bool is_damage = false;
   };
-  bool agree(const Agreement& frames, std::int64_t sightings) const;
+  bool has_moved(const FlightFrame& frame) const;
+  void add_confidence(double confidence, Agreement& views) const;
+  bool agree(const Agreement& views, std::int64_t sightings) const;
 
   /// What the next frames need of a damage.
   struct Known {
     Sighting last;
     std::optional<Place> best_place;  ///< in the best frame
-    Agreement frames;
+    Agreement views;
     Damage measured;            ///< in the best frame
     int piece = 0;              ///< of the first sighting with a place
     RigidTransform to_road{};   ///< from the axes of the first camera of the piece to the road of the first sighting
@@ -110,12 +116,14 @@ class FlightInventory {
 
   double min_confidence_;
   std::vector<RoadDamage> damages_;
-  std::vector<Known> known_;           ///< of each of them
-  std::array<double, 2> motion_px_{};  ///< image motion from frame to frame
-  bool motion_known_ = false;          ///< whether damages of the last frame determined it
-  bool had_road_ = false;              ///< whether the last frame had a road
-  std::int64_t sequence_ = 0;          ///< of the last frame, from 1
-  std::int64_t uncut_from_ = 1;        ///< since when the image has not jumped
+  std::vector<Known> known_;             ///< of each of them
+  std::array<double, 2> motion_px_{};    ///< image motion from frame to frame
+  bool motion_known_ = false;            ///< whether damages of the last frame determined it
+  bool had_road_ = false;                ///< whether the last frame had a road
+  std::int64_t sequence_ = 0;            ///< of the last frame, from 1
+  std::int64_t view_ = 0;                ///< number of the last view, from 1
+  std::optional<FlightPose> view_from_;  ///< its first pose
+  std::int64_t uncut_from_ = 1;          ///< since when the image has not jumped
 };
 
 }  // namespace roadstereo::io

@@ -44,7 +44,8 @@ struct SourcePair {
       std::numeric_limits<double>::quiet_NaN();  ///< since 1970 if known, else since the start of the source
   Frame left;
   Frame right;
-  std::string error;  ///< reason if the pair is invalid: unreadable, unpaired, too far apart in time; empty: valid
+  double white_level = 0;  ///< sample value of white of 16-bit images, where somebody has determined it; 0: unknown
+  std::string error;       ///< reason if the pair is invalid: unreadable, unpaired, too far apart in time; empty: valid
 };
 
 /// A recording or a camera. Not thread-safe.

@@ -128,13 +128,12 @@ stereo_msgs::msg::DisparityImage disparity_image(const std_msgs::msg::Header& he
 sensor_msgs::msg::PointCloud2 point_cloud(const std_msgs::msg::Header& header, const roadstereo::FrameResult& result,
                                           const roadstereo::StereoCalibration& calibration) {
   constexpr std::array names{"x", "y", "z", "sigma", "intensity"};
-  constexpr double farthest_baselines = 250;  // beyond, 0.1 px are metres
   constexpr double sixteenths = 16;           // of a grey level
   std::vector<float> values;
   for (int v = 0; v < result.disparity.height(); ++v) {
     for (int u = 0; u < result.disparity.width(); ++u) {
       const double d = result.disparity(u, v) + calibration.disparity_offset_px;
-      if (!std::isfinite(d) || d < calibration.focal_px / farthest_baselines) continue;
+      if (!std::isfinite(d) || d < roadstereo::min_cloud_disparity_px) continue;
       const std::array<double, 3> point = calibration.point_m(u, v, result.disparity(u, v));
       for (const double coordinate : point) values.push_back(static_cast<float>(coordinate));
       values.push_back(static_cast<float>(point[2] / d * result.sigma(u, v)));

@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <tuple>
 #include <utility>
 
 #include "core/log_odds.hpp"
 #include "core/order_statistics.hpp"
+#include "core/same_view.hpp"
 #include "io/damage_colours.hpp"
 #include "io/flight/outline_overlap.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
@@ -221,13 +223,39 @@ void FlightInventory::remember(std::vector<Sighting> sightings) {
   if (motion_known_) motion_px_ = {upper_median(along_u), upper_median(along_v)};
 }
 
-bool FlightInventory::agree(const Agreement& frames, std::int64_t sightings) const {
+/// Whether the frame begins a view.
+bool FlightInventory::has_moved(const FlightFrame& frame) const {
+  if (!frame.pose || !view_from_ || frame.pose->piece != view_from_->piece) return true;
+  return !is_same_view(view_from_->road_to_world, frame.pose->road_to_world, frame.height_m);
+}
+
+void FlightInventory::add_confidence(double confidence, Agreement& views) const {
+  if (views.view != view_ && views.frames > 0) {
+    constexpr std::size_t most = 2;
+    const double mean = views.sum / views.frames;
+    views.best.insert(std::upper_bound(views.best.begin(), views.best.end(), mean, std::greater<>()), mean);
+    views.best.resize(std::min(views.best.size(), most));
+    views.sum = views.frames = 0;
+  }
+  views.view = view_;
+  views.sum += log_odds(confidence);
+  ++views.frames;
+}
+
+bool FlightInventory::agree(const Agreement& views, std::int64_t sightings) const {
   if (sightings == 1) return true;
-  return log_odds(frames.first) + log_odds(frames.second) >= 2 * log_odds(min_confidence_);
+  const double last = views.sum / views.frames;
+  if (views.best.empty()) return last >= log_odds(min_confidence_);
+  const double other = views.best.size() > 1 ? std::max(views.best[1], last) : last;
+  return views.best[0] + other >= 2 * log_odds(min_confidence_);
 }
 
 std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
   ++sequence_;
+  if (has_moved(frame)) {
+    ++view_;
+    view_from_ = frame.pose;
+  }
   const bool has_road = frame.status == FrameStatus::good && frame.road_status != RoadStatus::none;
   if (has_road && had_road_ && frame.road_status != RoadStatus::tracked) uncut_from_ = sequence_;
   had_road_ = has_road;
@@ -247,21 +275,20 @@ std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
     }
     RoadDamage& on_road = damages_[static_cast<std::size_t>(now.id) - 1];
     Known& known = known_[static_cast<std::size_t>(now.id) - 1];
-    Agreement& frames = known.frames;
+    Agreement& views = known.views;
     ++on_road.sightings;
     on_road.last_frame = frame.index;
-    const bool first_damage = !candidate && !frames.is_damage;
-    const bool is_best = is_new || first_damage || (frames.is_damage != candidate && is_better(damage, known.measured));
+    const bool first_damage = !candidate && !views.is_damage;
+    const bool is_best = is_new || first_damage || (views.is_damage != candidate && is_better(damage, known.measured));
     if (is_best) {
       measure(frame, damage, on_road);
       known.measured = damage;
       known.best_place = now.place;
     }
     if (!candidate) extend(frame, now, is_best, known, on_road.best);
-    frames.is_damage = frames.is_damage || !candidate;
-    frames.second = std::max(frames.second, std::min(frames.first, damage.confidence));
-    frames.first = std::max(frames.first, damage.confidence);
-    on_road.candidate = !frames.is_damage || !agree(frames, on_road.sightings);
+    views.is_damage = views.is_damage || !candidate;
+    add_confidence(damage.confidence, views);
+    on_road.candidate = !views.is_damage || !agree(views, on_road.sightings);
     ids.push_back(now.id);
     sightings.push_back(std::move(now));
   };

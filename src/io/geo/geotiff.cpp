@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <mutex>
 #include <utility>
@@ -45,6 +46,22 @@ struct ScratchFile {
   ~ScratchFile() { VSIUnlink(name.c_str()); }
 };
 
+/// Cells and poses are metres towards east and north.
+void require_metres_east_north(const OGRSpatialReference& crs, const std::string& name) {
+  const char* unit = "";
+  if (const double metres = crs.GetLinearUnits(&unit); std::abs(metres - 1) > 1e-9) {
+    fail("--crs ", name, ": the unit of this coordinate system is ", unit, ", ", metres, " m; it must be the metre");
+  }
+  for (const int axis : {0, 1}) {
+    OGRAxisOrientation towards = OAO_Other;
+    crs.GetAxis(nullptr, axis, &towards);
+    if (towards == OAO_South || towards == OAO_West) {
+      fail("--crs ", name, ": an axis of this coordinate system leads ", OSRAxisEnumToName(towards),
+           "; they must lead east and north");
+    }
+  }
+}
+
 OGRSpatialReference spatial_reference(const MapReference& reference, const GdalErrors& errors) {
   OGRSpatialReference crs;
   if (reference.crs.empty()) {
@@ -54,6 +71,8 @@ OGRSpatialReference spatial_reference(const MapReference& reference, const GdalE
     fail("--crs ", reference.crs, ": GDAL does not know this coordinate system");
   } else if (crs.IsGeographic() || crs.IsGeocentric()) {
     fail("--crs ", reference.crs, ": this coordinate system is not projected; cells and poses are in metres");
+  } else {
+    require_metres_east_north(crs, reference.crs);
   }
   crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   return crs;

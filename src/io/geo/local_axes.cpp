@@ -38,7 +38,11 @@ std::array<double, 12> LocalAxes::to_utm(const std::array<double, 12>& pose) con
   local.Reverse(pose[3], pose[7], pose[11], lat, lon, alt, here_to_local);
   int zone = zone_;
   bool northern = north_;
-  GeographicLib::UTMUPS::Forward(lat, lon, zone, northern, east, north, convergence_deg, scale, zone_);
+  try {
+    GeographicLib::UTMUPS::Forward(lat, lon, zone, northern, east, north, convergence_deg, scale, zone_);
+  } catch (const GeographicLib::GeographicErr&) {
+    fail("a pose lies at latitude ", lat, "°, longitude ", lon, "°, which is too far from UTM zone ", zone_);
+  }
   if (northern != north_) north += north_ ? -GeographicLib::UTMUPS::UTMShift() : GeographicLib::UTMUPS::UTMShift();
   const double angle = to_radians(convergence_deg), c = std::cos(angle), s = std::sin(angle);
   std::array<double, 12> result{};

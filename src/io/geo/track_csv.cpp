@@ -21,7 +21,9 @@ constexpr std::array alt_names = {"alt", "altitude", "ele", "elevation", "alt_m"
 constexpr const char* px4_time = "time_utc_usec";
 constexpr std::array horizontal_sd_names = {"horizontal_sd_m", "h_acc", "eph"};
 constexpr std::array vertical_sd_names = {"vertical_sd_m", "v_acc", "epv"};
-constexpr std::array heading_names = {"heading", "yaw", "course", "bearing", "heading_deg"};
+constexpr std::array heading_names = {"heading", "yaw", "heading_deg"};
+constexpr std::array course_names = {"course", "bearing"};
+constexpr std::array speed_names = {"speed", "speed_m_s", "speed_mps"};  // metres per second
 
 std::string_view bare(std::string_view cell) {
   constexpr std::string_view around = " \t\r";
@@ -77,7 +79,7 @@ struct Column {
 /// Indices of the columns.
 struct Columns {
   Column time, lat, lon;
-  std::optional<Column> alt, heading, horizontal_sd, vertical_sd;
+  std::optional<Column> alt, heading, course, speed, horizontal_sd, vertical_sd;
   std::size_t count = 0;
   bool px4 = false;  ///< units of PX4's vehicle_gps_position
 };
@@ -118,6 +120,8 @@ Columns find_columns(const std::string& where, const std::vector<std::string_vie
   columns.lon = needed(lon_names);
   columns.alt = find_column(header, alt_names);
   columns.heading = find_column(header, heading_names);
+  columns.course = find_column(header, course_names);
+  columns.speed = find_column(header, speed_names);
   columns.horizontal_sd = find_column(header, horizontal_sd_names);
   columns.vertical_sd = find_column(header, vertical_sd_names);
   columns.count = header.size();
@@ -158,6 +162,18 @@ void add_standard_errors(const std::string& where, const Columns& columns, const
   point.vertical_sd_m = standard_error(where, columns.vertical_sd, cells);
 }
 
+/// NaN if unknown, as the course is of a receiver that stands.
+double heading_of(const std::string& where, const Columns& columns, const std::vector<std::string_view>& cells) {
+  const std::optional<Column>& column = columns.heading ? columns.heading : columns.course;
+  if (!column) return std::numeric_limits<double>::quiet_NaN();
+  if (!columns.heading && columns.speed) {
+    const std::string_view speed = cells[columns.speed->index];
+    const bool moves = speed.empty() || parse_number(where, columns.speed->name, speed) >= min_course_m_s;
+    if (!moves) return std::numeric_limits<double>::quiet_NaN();
+  }
+  return parse_heading(where, column->name, cells[column->index]);
+}
+
 /// Returns nullopt if the receiver had no fix.
 std::optional<TrackPoint> read_row(const std::string& where, const Columns& columns,
                                    const std::vector<std::string_view>& cells) {
@@ -175,7 +191,7 @@ std::optional<TrackPoint> read_row(const std::string& where, const Columns& colu
   point.lat_deg = parse_latitude(where, columns.lat.name, cells[columns.lat.index]);
   point.lon_deg = parse_longitude(where, columns.lon.name, cells[columns.lon.index]);
   if (columns.alt) point.alt_m = parse_altitude(where, columns.alt->name, cells[columns.alt->index]);
-  if (columns.heading) point.heading_deg = parse_heading(where, columns.heading->name, cells[columns.heading->index]);
+  point.heading_deg = heading_of(where, columns, cells);
   add_standard_errors(where, columns, cells, point);
   return point;
 }

@@ -31,6 +31,11 @@ std::vector<TrackLine> read_lines(const TrackText& file) {
   return read_track_csv(file);
 }
 
+/// What programs write before the first fix.
+bool has_no_fix(const TrackPoint& point) {
+  return point.lat_deg == 0 && point.lon_deg == 0;
+}
+
 void check_times(const std::string& path, const std::vector<TrackLine>& lines) {
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const double step = lines[i].point.time_s - lines[i - 1].point.time_s;
@@ -49,7 +54,8 @@ void check_times(const std::string& path, const std::vector<TrackLine>& lines) {
 
 Track read_track(const std::string& path, const TrackOptions& options) {
   options.validate();
-  const std::vector<TrackLine> lines = is_message_log(path) ? read_track_bag(path) : read_lines(read_text(path));
+  std::vector<TrackLine> lines = is_message_log(path) ? read_track_bag(path) : read_lines(read_text(path));
+  std::erase_if(lines, [](const TrackLine& line) { return has_no_fix(line.point); });
   check_times(path, lines);
   std::vector<TrackPoint> points;
   points.reserve(lines.size());

@@ -87,8 +87,7 @@ std::vector<TrackLine> read_srt(const TrackText& file) {
     TrackPoint point;
     if (std::isnan(start_s) || !read_position(where, line, point)) continue;
     point.time_s = start_s;
-    const bool fix = point.lat_deg != 0 || point.lon_deg != 0;
-    if (fix) points.push_back({point, number});
+    points.push_back({point, number});
     start_s = nan;  // one position per subtitle
   }
   return points;

@@ -87,14 +87,13 @@ RosMessage disparity_image(const RosHeader& header, ImageView<const float> dispa
 RosMessage point_cloud(const RosHeader& header, const RosPoints& maps, const StereoCalibration& calibration) {
   constexpr std::array names{"x", "y", "z", "sigma", "intensity"};
   constexpr auto point_bytes = static_cast<std::uint32_t>(names.size() * sizeof(float));
-  const double min_px = calibration.focal_px / farthest_baselines;
   std::vector<float> values;
   values.reserve(names.size() * static_cast<std::size_t>(maps.disparity.width()) *
                  static_cast<std::size_t>(maps.disparity.height()));
   for (int v = 0; v < maps.disparity.height(); ++v) {
     for (int u = 0; u < maps.disparity.width(); ++u) {
       const double d = maps.disparity(u, v);
-      if (!std::isfinite(d) || d + calibration.disparity_offset_px < min_px) continue;
+      if (!std::isfinite(d) || d + calibration.disparity_offset_px < min_cloud_disparity_px) continue;
       const std::array<double, 3> point = calibration.point_m(u, v, d);
       const double z_per_px = point[2] / (d + calibration.disparity_offset_px);
       constexpr double sixteenths = 16;

@@ -87,29 +87,33 @@ class MessageReader {
   const std::uint8_t* begin_ = nullptr;
 };
 
-constexpr int no_mosaic = -1;
+constexpr int no_conversion = -1;
 
 struct Encoding {
   std::string_view name;
   int type;            // OpenCV's type of the samples in the message
   ChannelOrder order;  // of the frame
-  int mosaic;          // OpenCV's conversion of a Bayer pattern
+  int conversion;      // OpenCV's, of a Bayer pattern or of luma and chroma, to that order
 };
 
 constexpr std::array encodings = {
-    Encoding{"mono8", CV_8UC1, ChannelOrder::grey, no_mosaic},
-    Encoding{"8UC1", CV_8UC1, ChannelOrder::grey, no_mosaic},
-    Encoding{"mono16", CV_16UC1, ChannelOrder::grey, no_mosaic},
-    Encoding{"16UC1", CV_16UC1, ChannelOrder::grey, no_mosaic},
-    Encoding{"bgr8", CV_8UC3, ChannelOrder::bgr, no_mosaic},
-    Encoding{"8UC3", CV_8UC3, ChannelOrder::bgr, no_mosaic},
-    Encoding{"rgb8", CV_8UC3, ChannelOrder::rgb, no_mosaic},
-    Encoding{"bgra8", CV_8UC4, ChannelOrder::bgra, no_mosaic},
-    Encoding{"rgba8", CV_8UC4, ChannelOrder::rgba, no_mosaic},
-    Encoding{"bgr16", CV_16UC3, ChannelOrder::bgr, no_mosaic},
-    Encoding{"rgb16", CV_16UC3, ChannelOrder::rgb, no_mosaic},
-    Encoding{"bgra16", CV_16UC4, ChannelOrder::bgra, no_mosaic},
-    Encoding{"rgba16", CV_16UC4, ChannelOrder::rgba, no_mosaic},
+    Encoding{"mono8", CV_8UC1, ChannelOrder::grey, no_conversion},
+    Encoding{"8UC1", CV_8UC1, ChannelOrder::grey, no_conversion},
+    Encoding{"mono16", CV_16UC1, ChannelOrder::grey, no_conversion},
+    Encoding{"16UC1", CV_16UC1, ChannelOrder::grey, no_conversion},
+    Encoding{"bgr8", CV_8UC3, ChannelOrder::bgr, no_conversion},
+    Encoding{"8UC3", CV_8UC3, ChannelOrder::bgr, no_conversion},
+    Encoding{"rgb8", CV_8UC3, ChannelOrder::rgb, no_conversion},
+    Encoding{"bgra8", CV_8UC4, ChannelOrder::bgra, no_conversion},
+    Encoding{"rgba8", CV_8UC4, ChannelOrder::rgba, no_conversion},
+    Encoding{"bgr16", CV_16UC3, ChannelOrder::bgr, no_conversion},
+    Encoding{"rgb16", CV_16UC3, ChannelOrder::rgb, no_conversion},
+    Encoding{"bgra16", CV_16UC4, ChannelOrder::bgra, no_conversion},
+    Encoding{"rgba16", CV_16UC4, ChannelOrder::rgba, no_conversion},
+    Encoding{"yuv422", CV_8UC2, ChannelOrder::bgr, cv::COLOR_YUV2BGR_UYVY},
+    Encoding{"uyvy", CV_8UC2, ChannelOrder::bgr, cv::COLOR_YUV2BGR_UYVY},
+    Encoding{"yuv422_yuy2", CV_8UC2, ChannelOrder::bgr, cv::COLOR_YUV2BGR_YUY2},
+    Encoding{"yuyv", CV_8UC2, ChannelOrder::bgr, cv::COLOR_YUV2BGR_YUY2},
     // OpenCV names a Bayer pattern by the second and third pixel of its second row.
     Encoding{"bayer_rggb8", CV_8UC1, ChannelOrder::bgr, cv::COLOR_BayerBG2BGR},
     Encoding{"bayer_bggr8", CV_8UC1, ChannelOrder::bgr, cv::COLOR_BayerRG2BGR},
@@ -125,7 +129,22 @@ const Encoding& find_encoding(const std::string& source, const std::string& name
   const auto found =
       std::find_if(encodings.begin(), encodings.end(), [&](const Encoding& e) { return e.name == name; });
   if (found != encodings.end()) return *found;
-  fail(source, ": the encoding is \"", name, "\"; supported are mono, rgb, bgr, rgba, bgra and bayer of 8 or 16 bits");
+  fail(source, ": the encoding is \"", name, "\"; supported are mono, rgb, bgr, rgba, bgra and bayer of 8 or 16 bits, ",
+       "and yuv422");
+}
+
+/// Encoding of an image before its compression, of "bayer_rggb8; jpeg compressed "; the whole text without a ";".
+std::string compressed_encoding(const std::string& format) {
+  return format.substr(0, format.find(';'));
+}
+
+Frame converted(const std::string& source, const cv::Mat& samples, const Encoding& encoding) {
+  if (encoding.type == CV_8UC2 && samples.cols % 2 != 0) {
+    fail(source, ": an image of ", samples.cols, " columns cannot be ", encoding.name, ", which has pairs of them");
+  }
+  cv::Mat colours;
+  cv::cvtColor(samples, colours, encoding.conversion);
+  return frame_from(colours, encoding.order);
 }
 
 void swap_bytes(Frame& frame) {
@@ -148,26 +167,27 @@ Frame read_image(const std::string& source, const std::vector<std::uint8_t>& mes
   const std::size_t step = reader.value<std::uint32_t>();
   const auto data = reader.list();
   const std::size_t row = static_cast<std::size_t>(width) * static_cast<std::size_t>(CV_ELEM_SIZE(encoding.type));
-  if (width == 0 || height == 0 || step < row || data.size() < step * static_cast<std::size_t>(height)) {
+  if (width == 0 || height == 0 || step < row || step % CV_ELEM_SIZE1(encoding.type) != 0 ||
+      data.size() < step * static_cast<std::size_t>(height)) {
     fail(source, ": ", data.size(), " bytes in rows of ", step, " are not an image of ", width, "×", height,
          " pixels (", encoding.name, ")");
   }
   const cv::Mat samples(height, width, encoding.type, const_cast<std::uint8_t*>(data.data()), step);
-  const ChannelOrder order = encoding.mosaic == no_mosaic ? encoding.order : ChannelOrder::grey;
-  Frame frame = frame_from(samples, order);
+  if (encoding.type == CV_8UC2) return converted(source, samples, encoding);
+  const bool is_mosaic = encoding.conversion != no_conversion;
+  Frame frame = frame_from(samples, is_mosaic ? ChannelOrder::grey : encoding.order);
   if (big_endian && frame.sample == SampleType::u16) swap_bytes(frame);
-  if (encoding.mosaic == no_mosaic) return frame;
-  cv::Mat colours;
-  cv::cvtColor(mat_over(frame.view()), colours, encoding.mosaic);
-  return frame_from(colours, encoding.order);
+  return is_mosaic ? converted(source, mat_over(frame.view()), encoding) : frame;
 }
 
 Frame read_compressed_image(const std::string& source, const std::vector<std::uint8_t>& message, MessageFormat format) {
   MessageReader reader(source, message, format);
   reader.header();
-  reader.text();  // format: free text, not needed
+  const std::string name = compressed_encoding(reader.text());
   const auto data = reader.list();
-  return decode_frame(source, {data.begin(), data.end()});
+  Frame frame = decode_frame(source, {data.begin(), data.end()});
+  if (!name.starts_with("bayer_") || frame.order != ChannelOrder::grey) return frame;
+  return converted(source, mat_over(frame.view()), find_encoding(source, name));
 }
 
 CameraInfo read_camera_info(const std::string& source, const std::vector<std::uint8_t>& message, MessageFormat format) {

@@ -66,11 +66,11 @@ class DeviceStages final : public FrameStages {
     maps_.settle();
   }
 
-  GreyPair convert_to_grey(const FrameView& left, const FrameView& right) override {
+  GreyPair convert_to_grey(const FrameView& left, const FrameView& right, double white_level) override {
     require_current_device(device_);  // before memory is taken of another
     if (recorder_) recorder_->begin();
     mark(StageClock::begin);
-    const FrameUpload::Pair frames = upload_.upload(left, right, options_.white_level, stream());
+    const FrameUpload::Pair frames = upload_.upload(left, right, white_level, stream());
     resize(left.width, left.height);
     to_grey_.convert(frames.left, frames.right, maps_.grey(), view(right_), stream());
     deblocking_.run(maps_.grey(), view(right_), options_.deblock, stream());

@@ -30,7 +30,7 @@ void copy_to_host(const ImageView<const T>& from, Image<T>& to, StreamView strea
 
 void FrameMaps::begin(int width, int height) {
   auto free = std::find_if(all_.begin(), all_.end(), [](const std::shared_ptr<Memory>& memory) {
-    return !memory->held.load(std::memory_order_acquire);
+    return memory->holders.load(std::memory_order_acquire) == 0;
   });
   if (free == all_.end()) free = all_.insert(all_.end(), std::make_shared<Memory>());
   memory_ = *free;
@@ -46,9 +46,10 @@ void FrameMaps::begin(int width, int height) {
 
 std::shared_ptr<const void> FrameMaps::hold() {
   if (std::shared_ptr<const void> holder = holder_.lock()) return holder;
-  memory_->held = memory_->was_held = true;
+  memory_->holders.fetch_add(1, std::memory_order_relaxed);
+  memory_->was_held = true;
   std::shared_ptr<const void> holder(
-      memory_.get(), [memory = memory_](const void*) { memory->held.store(false, std::memory_order_release); });
+      memory_.get(), [memory = memory_](const void*) { memory->holders.fetch_sub(1, std::memory_order_release); });
   holder_ = holder;
   return holder;
 }

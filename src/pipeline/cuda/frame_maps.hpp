@@ -42,8 +42,8 @@ class FrameMaps {
   struct Memory {
     DeviceArray<float> disparity, sigma, transformed;
     DeviceArray<std::int16_t> grey;
-    std::atomic<bool> held{false};
-    bool was_held = false;  ///< since a frame began in it
+    std::atomic<int> holders{0};  ///< the last one of a frame may still be on its way out when the next begins
+    bool was_held = false;        ///< since a frame began in it
   };
 
   int width_ = 0, height_ = 0;

@@ -1,5 +1,6 @@
 #include "road/cuda/verification_assessment.hpp"
 
+#include "core/noise_correlation.hpp"
 #include "road/road_assessment.hpp"
 #include "road/road_search.hpp"
 
@@ -28,7 +29,7 @@ RoadModelEstimate assess_road_verification(const VerificationStatistics& statist
   const int factor = fine_factor(width);
   const int rows = height / factor * factor;
   PlaneFitStatistics close = statistics_of(statistics.close, rows);
-  close.correlation = static_cast<double>(statistics.correlation);
+  close.correlation = full_size_correlation(static_cast<double>(statistics.correlation), factor);
   RoadModelEstimate estimate = assess_tracked_road(statistics_of(statistics.around, rows), close, previous,
                                                    first_search_again.range_px, width, height, calibration, options);
   if (statistics.near >= min_matches) {

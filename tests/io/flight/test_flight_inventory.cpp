@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "roadstereo/io/flight_inventory.hpp"
@@ -123,6 +124,28 @@ FlightFrame frame_along(std::int64_t index, double at_m, const std::vector<doubl
   // World: x right, y down, z ahead; road: x right, y ahead, z up, 1.5 m below the camera.
   frame.pose = {piece, {1, 0, 0, 0, 0, 0, -1, 1.5, 0, 1, 0, at_m}};
   return frame;
+}
+
+/// Minutes at a traffic light: of hundreds of looks at the same noise two are sure of themselves.
+TEST(FlightInventory, FramesOfStandingCameraAreOneView) {
+  const auto candidate_of = [](const std::vector<double>& at_m, const std::vector<double>& confidences) {
+    FlightInventory inventory;
+    for (std::size_t i = 0; i < confidences.size(); ++i) {
+      FlightFrame frame = frame_along(static_cast<std::int64_t>(i), at_m[i], {8});
+      frame.height_m = 1.5;
+      frame.damages[0].confidence = confidences[i];
+      if (confidences[i] < 0.5) std::swap(frame.candidates, frame.damages);
+      EXPECT_EQ(inventory.add(frame), std::vector<std::int64_t>{1});
+    }
+    return inventory.damages().at(0).candidate;
+  };
+  const std::vector<double> noise{0.2, 0.55, 0.2, 0.55, 0.2};
+  EXPECT_TRUE(candidate_of({0, 0, 0.003, -0.003, 0.002}, noise)) << "0.015 m are a hundredth of the height";
+  EXPECT_FALSE(candidate_of({0, 0.1, 0.2, 0.3, 0.4}, noise));
+  EXPECT_FALSE(candidate_of({0, 0, 0, 0, 0}, {0.4, 0.6, 0.6, 0.5, 0.6}));
+  // 0.2 and 0.55 while it stands are worth 0.36; 0.75 from elsewhere outweighs it, 0.6 does not.
+  EXPECT_FALSE(candidate_of({0, 0, 1}, {0.2, 0.55, 0.75}));
+  EXPECT_TRUE(candidate_of({0, 0, 1}, {0.2, 0.55, 0.6}));
 }
 
 // Forth, a stop, back, and forth again after frames that saw none of them, 3 m a frame.

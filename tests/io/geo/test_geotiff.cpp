@@ -127,6 +127,10 @@ TEST_F(GeoTiffTest, RejectsEmptyMapsAndUnknownCoordinateSystems) {
   const std::string file = (folder_ / "map.tif").string();
   EXPECT_THROW(write_geotiff(file, MapLayer::height, {}, {0.02, 0, 0, 0, ""}, read_cells), Error);
   EXPECT_THROW(write_geotiff(file, MapLayer::height, bounds, {0.02, 0, 0, 0, "EPSG:nonsense"}, read_cells), Error);
+  // Feet of New York; metres towards west and south of South Africa.
+  for (const char* crs : {"EPSG:2263", "EPSG:2048"}) {
+    EXPECT_THROW(write_geotiff(file, MapLayer::height, bounds, {0.02, 0, 0, 0, crs}, read_cells), Error) << crs;
+  }
   EXPECT_THROW(write_geotiff(folder_ / "none" / "map.tif", MapLayer::height, bounds, {0.02, 0, 0, 0, ""}, read_cells),
                SystemError);
 }

@@ -405,6 +405,22 @@ TEST_F(TrackFile, ReadsCsvWithoutAltitudeAndHeading) {
   EXPECT_NEAR(turn_deg(0, read[0].heading_deg), 0, 1e-6) << "of the way";
 }
 
+TEST_F(TrackFile, LeavesOutRowsBeforeFirstFix) {
+  const std::vector<TrackPoint> read = points("time,lat,lon\n8,0,0\n9,0.0,0.0\n10,50,8\n11,50.0001,8\n12,50.0002,8\n");
+  ASSERT_EQ(read.size(), 3U);
+  EXPECT_EQ(read[0].lat_deg, 50);
+  expect_refused("time,lat,lon\n8,0,0\n9,0,0\n", "the track has no points");
+}
+
+/// The course of a receiver that stands is noise; a heading, of a compass, is not.
+TEST_F(TrackFile, IgnoresCourseOfCsvWhileStanding) {
+  const std::string rows = "10,50,8,90,0.1\n11,50.0001,8,90,8\n12,50.0002,8,90,8\n";
+  const std::vector<TrackPoint> course = points("time,lat,lon,bearing,speed\n" + rows);
+  EXPECT_NEAR(turn_deg(0, course[0].heading_deg), 0, 1e-6) << "of the way";
+  EXPECT_DOUBLE_EQ(course[1].heading_deg, 90);
+  EXPECT_DOUBLE_EQ(points("time,lat,lon,heading,speed\n" + rows)[0].heading_deg, 90);
+}
+
 TEST_F(TrackFile, ReadsNmea) {
   const std::vector<TrackPoint> read = points(
       "$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n"

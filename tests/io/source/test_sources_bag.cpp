@@ -211,7 +211,25 @@ TEST_F(BagSource, ReadsEveryEncoding) {
   }
 }
 
+/// Rec. 601: luma 81, Cb 90, Cr 240 is red (255, 0, 0).
+TEST_F(BagSource, ReadsLumaAndChroma) {
+  for (const auto& [encoding, cells] :
+       {std::pair{"yuv422", std::array{90, 81, 240, 81}}, std::pair{"yuv422_yuy2", std::array{81, 90, 81, 240}}}) {
+    BagWriter::Picture picture{encoding, 32, 32, 64, false, {}};
+    for (int i = 0; i < 32 * 64; ++i) {
+      picture.data.push_back(static_cast<std::uint8_t>(cells[static_cast<std::size_t>(i % 4)]));
+    }
+    const SourcePair pair = pair_with(picture);
+    ASSERT_EQ(pair.error, "") << encoding;
+    ASSERT_EQ(pair.left.order, ChannelOrder::bgr);
+    EXPECT_NEAR(pair.left.bytes[0], 0, 2) << encoding;
+    EXPECT_NEAR(pair.left.bytes[1], 0, 2) << encoding;
+    EXPECT_NEAR(pair.left.bytes[2], 255, 2) << encoding;
+  }
+}
+
 TEST_F(BagSource, DamagedImageCostsOnePair) {
+  EXPECT_NE(pair_with({"mono16", 32, 32, 65, false, std::vector<std::uint8_t>(65 * 32)}).error, "");
   EXPECT_EQ(pair_with({"yuv9", 32, 32, 32, false, std::vector<std::uint8_t>(1024)}).error.rfind(left_topic, 0), 0U);
   BagWriter::Picture cut = grey(3);
   cut.data.resize(1000);
@@ -239,6 +257,30 @@ TEST_F(BagSource, ReadsCompressedImages) {
   EXPECT_NEAR(pair.right.bytes[0], 30, 3);
   EXPECT_NEAR(pair.right.bytes[2], 90, 3);
   EXPECT_NE(source->next().value().error, "");
+}
+
+/// What image_transport makes of the raw image of a Bayer camera: its mosaic in grey, and the encoding in the format.
+TEST_F(BagSource, DemosaicsCompressedImages) {
+  const std::string file = path("flight.bag");
+  BagWriter writer(file);
+  cv::Mat mosaic(32, 48, CV_8UC1, cv::Scalar(100));
+  for (int v = 0; v < 32; v += 2) {
+    for (int u = 0; u < 48; u += 2) {
+      mosaic.at<std::uint8_t>(v, u) = 200;
+      mosaic.at<std::uint8_t>(v + 1, u + 1) = 50;
+    }
+  }
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", mosaic, png);
+  writer.write_compressed("/cam0/image_raw/compressed", start_s, start_s, "bayer_rggb8; png compressed ", png);
+  writer.write_compressed("/cam1/image_raw/compressed", start_s, start_s, "mono8; png compressed ", png);
+  writer.close();
+  const SourcePair pair = open_bag(file, {})->next().value();
+  ASSERT_EQ(pair.error, "");
+  ASSERT_EQ(pair.left.order, ChannelOrder::bgr);
+  const auto at = pair.left.bytes.begin() + 3 * (48 * 7 + 9);
+  EXPECT_EQ(std::vector<std::uint8_t>(at, at + 3), (std::vector<std::uint8_t>{50, 100, 200}));
+  EXPECT_EQ(pair.right.order, ChannelOrder::grey);
 }
 
 BagWriter::Camera camera(double right_shift_px) {
