@@ -101,7 +101,7 @@ void search_lines(const PlaneEvidence& grid, const ShearedRows& sheared, double 
 void refine_plane(const PlaneEvidence& grid, const TiltLimit& limit, Candidate& candidate) {
   constexpr double first_step = 1.0;
   constexpr int halvings = 4;
-  const auto score = [&](const DisparityPlane& plane) { return limit.level_weight(plane) * grid.of_plane(plane); };
+  const auto score = [&](const DisparityPlane& plane) { return limit.pose_weight(plane) * grid.of_plane(plane); };
   candidate.score = score(candidate.points.plane(grid));
   double step = first_step;
   for (int halving = 0; halving < halvings; ++halving, step /= 2) {
@@ -213,7 +213,7 @@ PlaneSearchResult search_planes(const PlaneEvidence& evidence, const TiltLimit& 
     search_lines(evidence, rows, slope, limit, candidates.data() + static_cast<std::ptrdiff_t>(i) * bottom_steps,
                  walls[static_cast<std::size_t>(i)]);
   });
-  const auto weight = [&](const DisparityPlane& plane) { return limit.level_weight(plane) * prior(plane); };
+  const auto weight = [&](const DisparityPlane& plane) { return limit.pose_weight(plane) * prior(plane); };
   for (Candidate& candidate : candidates) {
     if (candidate.score > 0) candidate.weight = weight(candidate.points.plane(evidence));
   }

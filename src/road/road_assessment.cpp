@@ -48,7 +48,13 @@ TiltLimit::TiltLimit(int width, int height, const std::optional<StereoCalibratio
       cx_(calibration ? calibration->cx_px : width / 2.0),
       cy_(calibration ? calibration->cy_px : height / 2.0),
       offset_(calibration ? calibration->disparity_offset_px : 0),
-      max_sine_(std::sin(to_radians(max_tilt_deg))) {}
+      max_sine_(std::sin(to_radians(max_tilt_deg))),
+      height_(height) {}
+
+double TiltLimit::share_below_horizon(const DisparityPlane& plane) const {
+  const double top = plane.disparity(cx_, 0) + offset_, bottom = plane.disparity(cx_, height_ - 1) + offset_;
+  return top >= 0 || bottom <= 0 ? 1 : bottom / (bottom - top);
+}
 
 double TiltLimit::normal_length(const DisparityPlane& plane) const {
   const double depth = (plane.disparity(cx_, cy_) + offset_) / focal_;
@@ -61,9 +67,16 @@ bool TiltLimit::can_be_road(const DisparityPlane& plane) const {
   return length > 0 && std::abs(plane.a2) <= max_sine_ * length && plane.a1 >= -max_sine_ * length;
 }
 
-double TiltLimit::level_weight(const DisparityPlane& plane) const {
-  const double tilt = plane.a2 / (normal_length(plane) * max_sine_ * level_tilt);
-  return std::exp(-0.5 * tilt * tilt);
+double TiltLimit::no_bonnet_weight(const DisparityPlane& plane) const {
+  constexpr double usual_share = 0.3;
+  const double baseline_over_height = normal_length(plane);
+  return std::min(1.0, share_below_horizon(plane) / usual_share) / (1 + baseline_over_height * baseline_over_height);
+}
+
+double TiltLimit::pose_weight(const DisparityPlane& plane) const {
+  const double baseline_over_height = normal_length(plane);
+  const double tilt = plane.a2 / (baseline_over_height * max_sine_ * level_tilt);
+  return std::exp(-0.5 * tilt * tilt) * no_bonnet_weight(plane);
 }
 
 double weight_near(const DisparityPlane& plane, const DisparityPlane& last, double at_infinity, int width, int height) {
@@ -92,9 +105,9 @@ void assess_found_road(const PlaneFitStatistics& fit, double evidence, const Til
   estimate.evidence = evidence;
   estimate.correlation = fit.correlation;
   estimate.reason = assess_plane_fit(fit, limit, estimate);
-  if (estimate.reason.empty() && evidence < options.min_evidence) {
-    estimate.reason =
-        format_message("the evidence for a road is ", evidence, " per pixel, less than ", options.min_evidence);
+  const double least = options.min_evidence / limit.no_bonnet_weight(fit.plane);
+  if (estimate.reason.empty() && evidence < least) {
+    estimate.reason = format_message("the evidence for a road is ", evidence, " per pixel, less than ", least);
   }
   if (estimate.reason.empty()) {
     estimate.status = evidence < options.weak_evidence ? RoadStatus::weak : RoadStatus::found;

@@ -15,14 +15,22 @@ class TiltLimit {
   bool can_be_road(const DisparityPlane& plane) const;
 
   /// Prior weight of a plane that can be a road, above 0 … 1: rigs are mounted level, so that of two planes with
-  /// similar evidence the less tilted one is the road. A normal distribution in the sine of the tilt.
-  double level_weight(const DisparityPlane& plane) const;
+  /// similar evidence the less tilted one is the road. A normal distribution in the sine of the tilt, times
+  /// `no_bonnet_weight`.
+  double pose_weight(const DisparityPlane& plane) const;
+
+  /// Prior weight of a plane as a road rather than a bonnet, above 0 … 1: 1 / (1 + (B/h)²), since roads are baselines B
+  /// below the camera, h, and in proportion where less than three tenths of the rows lie below its horizon.
+  double no_bonnet_weight(const DisparityPlane& plane) const;
 
  private:
-  /// Of the normal of the road (not of length 1), in units in which a2 is its part along the columns.
+  /// Of the normal of the road, in units in which a2 is its part along the columns: baseline over height.
   double normal_length(const DisparityPlane& plane) const;
 
-  double focal_, cx_, cy_, offset_, max_sine_;
+  /// Share of the rows below the horizon, in the middle column.
+  double share_below_horizon(const DisparityPlane& plane) const;
+
+  double focal_, cx_, cy_, offset_, max_sine_, height_;
 };
 
 /// Weight of a plane, 0.1 … 1: roads are near the last frame's, ½ where tracking loses them. One with ten times the

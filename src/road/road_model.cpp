@@ -182,7 +182,7 @@ PlaneFitStatistics find_around(const FinePair& pair, const DisparityPlane& plane
 RoadModelEstimate assess_plane(FinePairs& pairs, const PlaneHypothesis& hypothesis, const PlaneEvidence& evidence,
                                const TiltLimit& limit, const RoadModelOptions& options, int threads,
                                const RoadModelEstimate& matched) {
-  const auto weigh = [&](const DisparityPlane& plane) { return limit.level_weight(plane) * evidence.of_plane(plane); };
+  const auto weigh = [&](const DisparityPlane& plane) { return limit.pose_weight(plane) * evidence.of_plane(plane); };
   RoadModelEstimate first = matched;
   for (int i = 0; i < FinePairs::count; ++i) {
     const FinePair& pair = pairs[i];

@@ -313,18 +313,25 @@ TEST(TrackedRoad, IsFoundAgainInNoiseThatHidesBlocks) {
             RoadStatus::none);
 }
 
-TEST(TiltLimit, LevelWeightIsNormalInSineOfTilt) {
+TEST(TiltLimit, PoseWeightFollowsTiltAndHeight) {
   const StereoCalibration rig{700, 320, 180, 0.5, 0, 640, 360};
-  const double height = 1.7, pitch = 0.3;
-  for (const double degrees : {0.0, 4.0, -10.0, 25.0}) {
+  const double pitch = 0.3;
+  for (const auto& [degrees, height] :
+       {std::pair{0.0, 1.7}, std::pair{4.0, 1.7}, std::pair{-10.0, 0.5}, std::pair{25.0, 0.3}, std::pair{0.0, 10.0}}) {
     const double roll = degrees * std::acos(-1.0) / 180;
     // Normal of the road in the camera: the sine of its tilt is its part along the columns.
     const double nx = std::sin(roll), ny = std::cos(roll) * std::cos(pitch), nz = std::cos(roll) * std::sin(pitch);
     const double scale = rig.baseline_m / height;
     const DisparityPlane plane{scale * (nz * rig.focal_px - ny * rig.cy_px - nx * rig.cx_px), scale * ny, scale * nx};
     const double sigmas = std::sin(roll) / (0.33 * std::sin(30 * std::acos(-1.0) / 180));
-    EXPECT_NEAR(TiltLimit(640, 360, rig, 30).level_weight(plane), std::exp(-0.5 * sigmas * sigmas), 1e-9) << degrees;
+    EXPECT_NEAR(TiltLimit(640, 360, rig, 30).pose_weight(plane), std::exp(-0.5 * sigmas * sigmas) / (1 + scale * scale),
+                1e-9)
+        << degrees << "°, " << height << " m";
   }
+  // 2 m high, the horizon in row 288: below it lie 71 of 359 rows, two thirds of three tenths.
+  const double scale = rig.baseline_m / 2, depth = scale * (180 - 288) / rig.focal_px;
+  EXPECT_NEAR(TiltLimit(640, 360, rig, 30).pose_weight({-scale * 288, scale, 0}),
+              71 / 359.0 / 0.3 / (1 + scale * scale + depth * depth), 1e-9);
 }
 
 TEST(PlaneEvidence, LevelRoadIsTakenBeforeTiltedFront) {

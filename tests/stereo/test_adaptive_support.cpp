@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/noise_correlation.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "stereo/adaptive_support.hpp"
 

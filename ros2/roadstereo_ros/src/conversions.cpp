@@ -7,6 +7,7 @@
 #include <limits>
 #include <roadstereo/error.hpp>
 #include <roadstereo/ground_plane.hpp>
+#include <roadstereo/point_cloud.hpp>
 #include <sensor_msgs/msg/point_field.hpp>
 #include <string>
 #include <vector>
