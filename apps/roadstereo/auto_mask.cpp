@@ -17,6 +17,8 @@ void AutoMask::restore(const io::StaticMaskRecord& record, Image<std::uint8_t> m
 bool AutoMask::add(const FrameView& left, const FrameView& right, double white_level,
                    const std::optional<DisparityPlane>& road, double at_infinity_px) {
   if (!on_ || record_.judged) return false;
+  if (white_level != white_level_) watch_ = StaticMask();  // all levels have changed
+  white_level_ = white_level;
   to_grey(left, white_level, left_);
   to_grey(right, white_level, right_);
   const bool same_size = left.width == right.width && left.height == right.height;

@@ -40,6 +40,7 @@ class AutoMask {
 
   bool on_;
   StaticMask watch_;
+  double white_level_ = 0;  ///< of the last pair
   GreyImage left_, right_;
   Image<std::uint8_t> mask_;
   io::StaticMaskRecord record_;

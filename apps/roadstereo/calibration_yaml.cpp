@@ -16,7 +16,7 @@ std::string matrix_yaml(const char* key, int rows, std::span<const double> value
 }
 
 std::string distortion_yaml(const char* key, const std::vector<double>& coefficients) {
-  constexpr std::array<double, 5> none{};
+  constexpr std::array<double, 4> none{};
   return matrix_yaml(key, 1, coefficients.empty() ? std::span<const double>(none) : coefficients);
 }
 

@@ -159,7 +159,6 @@ void inspect_flight(FlightSettings settings) {
   for (const std::string& input : input_files(settings)) folder.protect(input);
   io::FlightJournal journal = open_journal(settings, run.options, folder);
   journal.for_each([&](const io::FlightFrame& frame) { results.add(frame); });
-  if (journal.last() && journal.last()->white_level > 0) source.set_white_level(journal.last()->white_level);
   run.resumed_at = journal.frames();
   if (const auto done = journal.last(); settings.to && done && done->index > *settings.to) {
     fail(settings.output, ": frames up to ", done->index, " are finished; --to is ", *settings.to);

@@ -69,7 +69,10 @@ void add_map(CLI::App& app) {
   command->add_flag("--json", settings->json, "Print map.json instead of the summary");
   add_source_options(*command, settings->source_settings);
   add_processing_options(*command, settings->processing);
-  command->callback([settings] { map(*settings); });
+  command->callback([settings, command] {
+    settings->sets_severity = command->count("--severity") > 0;
+    map(*settings);
+  });
 }
 
 }  // namespace roadstereo::cli

@@ -18,11 +18,12 @@ struct RoadModelOptions {
   bool with_roll = true;              ///< estimate a2; false is the paper's model, eq. (4)
   double max_disparity_share = 0.35;  ///< largest disparity searched, as a share of the image width, 0.05 … 0.9
   double max_road_tilt_deg = 30.0;    ///< steepest sideways tilt of a road; a steeper plane is a wall, 5 … 80
-  double min_evidence = 0.06;         ///< below this evidence (RoadModelEstimate) there is no road, 0 … 1
-  double weak_evidence = 0.15;        ///< below this evidence the road is weak, 0 … 1
-  double verify_tolerance_px = 1.0;   ///< largest spread that a tracked road may leave, pixels of the image shrunk
-                                      ///< by a power of two to less than 1920 columns, above 0 … 100
-  double height_m = 0;                ///< expected height of the camera above the road, metres, 0 … 1000; 0: unknown
+  double min_evidence = 0.06;   ///< below this evidence (RoadModelEstimate) there is no road, 0 … 1; more of what may
+                                ///< be a bonnet: nearer than a few baselines, or in few rows
+  double weak_evidence = 0.15;  ///< below this evidence the road is weak, 0 … 1
+  double verify_tolerance_px = 1.0;  ///< largest spread that a tracked road may leave, pixels of the image shrunk
+                                     ///< by a power of two to less than 1920 columns, above 0 … 100
+  double height_m = 0;               ///< expected height of the camera above the road, metres, 0 … 1000; 0: unknown
   double pitch_deg = unknown_pitch_deg;  ///< expected pitch of the camera below the horizon, −90 … 90; −90: unknown
 
   /// Throws Error naming the first option that is out of range.

@@ -26,11 +26,11 @@ class SharedOdometry {
   SharedOdometry(const StereoCalibration& calibration, const OdometryOptions& options)
       : calibration_(calibration), odometry_(calibration, options) {}
 
-  FramePose add(int frame, const ProcessedFrame& processed) {
+  FramePose add(int frame, const ProcessedFrame& processed, double time_s) {
     require_maps(processed, "odometry: the maps of frame " + std::to_string(frame));
     const Image<float>& disparity = processed.result.disparity;
     calibration_.validate(disparity.width(), disparity.height(), "calibration");
-    return call_([&] { return odometry_.add(frame, processed.result); });
+    return call_([&] { return odometry_.add(frame, processed.result, time_s); });
   }
   int reference() {
     return call_([&] { return odometry_.reference(); });
@@ -112,7 +112,9 @@ void bind_odometry(py::module_& module) {
            py::arg("min_overlap") = usual.min_overlap, py::arg("reference_overlap") = usual.reference_overlap,
            py::arg("estimate_offset") = usual.estimate_offset, py::arg("threads") = usual.threads, odometry_init_doc)
       .def("add", &SharedOdometry::add, py::arg("frame"), py::arg("result"),
+           py::arg("time_s") = std::numeric_limits<double>::quiet_NaN(),
            "Add the result of a frame, whose index is above that of the last one; return its pose.\n\n"
+           "time_s, if known, tells of missing frames that indices do not count.\n\n"
            "Raises Error when sizes differ or the index does not grow.")
       .def_property_readonly("reference", &SharedOdometry::reference,
                              "Index of the frame that the next one is aligned with; −1 before the first.")

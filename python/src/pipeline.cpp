@@ -131,7 +131,7 @@ void bind_pipeline(py::module_& module) {
            process_doc)
       .def("set_mask", &SharedPipeline::set_mask, py::arg("mask"),
            "Leave out pixels of the left image where the mask, (H, W) bool or uint8, is not 0, in all later pairs.\n\n"
-           "They have neither disparity nor damage. None ends it. Raises Error with the engine cuda.")
+           "They have neither disparity nor damage. None ends it. The engine auto becomes cpu; raises Error with cuda.")
       .def("warm_up", &SharedPipeline::warm_up, py::arg("width"), py::arg("height"),
            "Allocate memory and start threads for pairs of this size, pixels. Resets the pipeline.")
       .def("set_device_options", &SharedPipeline::set_device_options, py::kw_only(), py::arg("download") = true,

@@ -38,7 +38,7 @@ constexpr const char* cloud_doc =
     R"(Triangulate a disparity map: return points and their colours.
 
 disparity is (H, W), pixels; points is (N, 3) float32, metres, camera frame: x right, y down, z forward, row by row.
-Pixels without a disparity or farther away than 250 baselines are left out. With the left image, an array as `process`
+Pixels without a disparity of at least 1 px (0 at infinity) are left out. With the left image, an array as `process`
 takes it, colours is (N, 3) uint8, red, green, blue; else None. white_level is that of the pipeline's options.)";
 
 }  // namespace

@@ -207,7 +207,7 @@ Ruts find_ruts(const Cells& cells, const SurfaceCoordinates& coordinates, const 
   if (samples.all.empty()) return {};
   std::array<RutGrid, directions> found;
   parallel_for(directions, threads, [&](int k, int) {
-    const double angle = to_radians(mount_yaw_deg + k * step_degrees - max_degrees);
+    const double angle = to_radians(k * step_degrees - max_degrees - mount_yaw_deg);  // from y towards x
     found[static_cast<std::size_t>(k)] = find_along(samples, {std::cos(angle), std::sin(angle)});
   });
   const auto best = std::max_element(found.begin(), found.end(), [](const RutGrid& one, const RutGrid& other) {

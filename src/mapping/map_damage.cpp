@@ -205,6 +205,7 @@ std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& 
   for (const MapBox& box : windows_of(map, side)) {
     if (!make_view(map, box, view)) continue;
     const std::array<double, 2> centre_m{(box.i0 + 0.5 * side) * cell_m, (box.j0 + 0.5 * side) * cell_m};
+    of_window.mount_yaw_deg = options.mount_yaw_deg;
     for (double near_m = side * cell_m; near_m <= max_near_m; near_m *= 2) {
       const std::optional<double> azimuth_deg = azimuth_near(centre_m, near_m, paths);
       if (!azimuth_deg) continue;

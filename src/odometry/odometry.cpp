@@ -140,7 +140,7 @@ void Odometry::State::make_reference(const FrameMaps& maps, const OdometryFrame&
 int Odometry::State::steps_to(int frame, double time_s) const {
   constexpr double most = 20;  // farther ahead nothing is predicted
   const int frames = trajectory.frames.empty() ? 1 : frame - trajectory.frames.back().frame;
-  const double by_time = step_s_ > 0 ? std::round((time_s - time_s_) / step_s_) : 0;
+  const double by_time = step_s_ > 0 ? std::round((time_s - time_s_) / step_s_) : 0;  // NaN without times
   return by_time > frames && by_time <= most ? static_cast<int>(by_time) : frames;
 }
 
@@ -165,8 +165,12 @@ const FramePose& Odometry::State::add(int frame, const OdometryFrame& maps) {
   const FrameMaps own{pyramid_, maps.disparity, maps.sigma, estimator.calibration().disparity_offset_px};
   const int steps = steps_to(frame, maps.time_s);
   constexpr double memory = 0.8;
-  if (const double step_s = (maps.time_s - time_s_) / steps; step_s > 0) {
-    step_s_ = step_s_ > 0 ? memory * step_s_ + (1 - memory) * step_s : step_s;
+  const double step_s = (maps.time_s - time_s_) / steps;
+  constexpr double max_change = 1.5;  // more is a pause, or a frame that is missing
+  if (step_s_ > 0 && step_s > 0 && step_s < max_change * step_s_) {
+    step_s_ = memory * step_s_ + (1 - memory) * step_s;
+  } else if (!(step_s_ > 0)) {
+    step_s_ = step_s;
   }
   time_s_ = maps.time_s;
   std::optional<Alignment> alignment;

@@ -548,6 +548,7 @@ void Pipeline::set_mask(ImageView<const std::uint8_t> mask) {
 }
 
 void Pipeline::set_white_level(double level) {
+  if (level == state_->options.white_level) return;
   PipelineOptions changed = state_->options;
   changed.white_level = level;
   changed.validate();

@@ -83,6 +83,7 @@ std::size_t mark_border(ImageView<const std::int16_t> grey, std::int16_t black, 
 
 PictureMask::PictureMask(ImageView<const std::int16_t> grey, ImageView<const std::uint8_t> mask)
     : outside_(scratch_vector<std::uint8_t>()), view_(mask) {
+  if (grey.empty()) return;
   constexpr std::size_t noteworthy = 500;  // one in so many pixels
   const std::int16_t black = black_level(grey);
   if (!has_black_sides(grey, black)) return;

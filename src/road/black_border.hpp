@@ -14,6 +14,8 @@ namespace roadstereo {
 class PictureMask {
  public:
   PictureMask(ImageView<const std::int16_t> grey, ImageView<const std::uint8_t> mask);
+  PictureMask(const PictureMask&) = delete;
+  PictureMask& operator=(const PictureMask&) = delete;
 
   bool has_border() const { return has_border_; }
   ImageView<const std::uint8_t> view() const { return view_; }

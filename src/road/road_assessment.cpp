@@ -53,7 +53,8 @@ TiltLimit::TiltLimit(int width, int height, const std::optional<StereoCalibratio
 
 double TiltLimit::share_below_horizon(const DisparityPlane& plane) const {
   const double top = plane.disparity(cx_, 0) + offset_, bottom = plane.disparity(cx_, height_ - 1) + offset_;
-  return top >= 0 || bottom <= 0 ? 1 : bottom / (bottom - top);
+  constexpr double least = 0.01;  // of a plane that is seen in a corner
+  return top >= 0 ? 1 : std::max(least, bottom / (bottom - top));
 }
 
 double TiltLimit::normal_length(const DisparityPlane& plane) const {

@@ -30,7 +30,7 @@ TEST(CloudFromDisparity, MatchesPointsByHand) {
   disparity(0, 0) = 8;      // 1 m
   disparity(2, 0) = 3;      // 2 m
   disparity(0, 1) = -2;     // d + doffs = 0
-  disparity(1, 1) = -1.7F;  // 33 m: beyond 250 baselines
+  disparity(1, 1) = -1.7F;  // 33 m: 0.3 px, less than the smallest
   disparity(2, 1) = std::numeric_limits<float>::infinity();
   Frame left{std::vector<std::uint8_t>(18), 3, 2, SampleType::u8, ChannelOrder::rgb};
   for (std::size_t i = 0; i < left.bytes.size(); ++i) left.bytes[i] = static_cast<std::uint8_t>(i);

@@ -180,6 +180,24 @@ TEST(FindDamage, FollowsYawOfMount) {
   }
 }
 
+TEST(FindDamage, FollowsObliqueYawOfMount) {
+  // Camera turned by 45° to the right of the travel: the road leads to the upper left, x = −y + c.
+  const Lane lane([](double x, double y) { return rut(x, y, 1.7, -1, 0.7 * std::numbers::sqrt2, 0.02); });
+  const auto ruts_at = [&](double yaw_deg) {
+    DamageOptions options;
+    options.mount_yaw_deg = yaw_deg;
+    int ruts = 0;
+    for (const Damage& damage : find_damage(lane.input(), options).damages) {
+      ruts += damage.metrics->distress == Distress::rut ? 1 : 0;
+    }
+    return ruts;
+  };
+  EXPECT_EQ(ruts_at(45), 1);
+  EXPECT_EQ(ruts_at(30), 1);
+  EXPECT_EQ(ruts_at(-45), 0);
+  EXPECT_EQ(ruts_at(0), 0);
+}
+
 /// Two ruts are the larger part of what is seen: the surface lies on what is left of the road.
 TEST(FindDamage, MeasuresWheelTracks) {
   const Lane lane(wheel_tracks);

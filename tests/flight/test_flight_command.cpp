@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "io/lossless_png.hpp"
 #include "roadstereo/io/image_file.hpp"
 #include "roadstereo/synth.hpp"
 #include "tests/cli/command_test.hpp"
@@ -358,6 +359,35 @@ TEST_F(FlightCommand, TellsInHowManyFramesThereIsNoRoad) {
   EXPECT_NE(report.find("Damage could not be searched for in 2 of 3 frames"), std::string::npos);
   EXPECT_EQ(report.find("No damage found.</strong>"), std::string::npos) << "without a word of the other frames";
   EXPECT_EQ(json_file("out/summary.json")["frames"]["inspected"], 1);
+}
+
+/// 12 bits in 16: two dark pairs that 10 bits would hold, then two bright ones.
+TEST_F(FlightCommand, WhiteLevelRisesWithPictures) {
+  for (int i = 0; i < distinct_frames; ++i) {
+    for (const std::string side : {"left/", "right/"}) {
+      const std::string file = side + std::to_string(i) + ".png";
+      const Frame narrow = io::read_frame((folder_ / file).string());
+      Frame wide{std::vector<std::uint8_t>(2 * narrow.bytes.size()), narrow.width, narrow.height, SampleType::u16,
+                 narrow.order};
+      for (std::size_t k = 0; k < narrow.bytes.size(); ++k) {
+        const unsigned sample = narrow.bytes[k] * (i < 2 ? 4U : 16U);
+        wide.bytes[2 * k] = static_cast<std::uint8_t>(sample & 255U);
+        wide.bytes[2 * k + 1] = static_cast<std::uint8_t>(sample >> 8U);
+      }
+      write(file, io::encode_lossless_png(wide.view(), 1));
+    }
+  }
+  write_list(4);
+  const std::string flight = "inspect flight.txt --calibration rig.yaml --trajectory --quiet --output ";
+  ASSERT_EQ(run(flight + "whole").exit_code, 0);
+  EXPECT_EQ(json_file("whole/summary.json")["frames"]["good"], 4);
+  EXPECT_EQ(json_file("whole/summary.json")["options"]["white_level"], 4095);
+  EXPECT_EQ(json_file("whole/summary.json")["inputs"]["finds_white_level"], true);
+  for (const std::string last : {"1", "2"}) {
+    ASSERT_EQ(run(flight + "cut --to " + last).exit_code, 0);
+    ASSERT_EQ(run(flight + "cut --resume").exit_code, 0);
+    expect_same("cut", "whole");
+  }
 }
 
 TEST_F(FlightCommand, ResumeLeavesNothingOfAnEarlierRun) {

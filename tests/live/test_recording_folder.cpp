@@ -105,6 +105,12 @@ TEST_F(RecordingFolderFiles, AreNotOverwritten) {
     folder.write({deep_frame(), deep_frame(), 1});
   }
   EXPECT_THROW(RecordingFolder(folder_ / "rec", {}), Error);
+  std::filesystem::create_directories(folder_ / "mine");
+  write("mine/calibration.yaml", "focal_px: 2\n");
+  EXPECT_THROW(RecordingFolder(folder_ / "mine", "focal_px: 1\n"), Error);
+  RecordingFolder(folder_ / "mine", "focal_px: 2\n");
+  RecordingFolder(folder_ / "mine", {});
+  EXPECT_EQ(read_text(folder_ / "mine/calibration.yaml"), "focal_px: 2\n") << "it was there before";
 }
 
 }  // namespace

@@ -40,7 +40,9 @@ struct TestFrame {
   std::vector<std::uint8_t> grey = std::vector<std::uint8_t>(width * height, 100);
   MapFrame frame;
 
-  TestFrame(const RigidTransform& pose, const Step& step, double noise_px, unsigned seed) {
+  /// `step` has a height(x, y), metres.
+  template <class Surface = Step>
+  TestFrame(const RigidTransform& pose, const Surface& step, double noise_px, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> noise(0, 1);
     const StereoCalibration calibration = rig();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -331,6 +332,38 @@ TEST_F(RoadMapTest, DamageThatNoFrameResolvesIsFoundInMap) {
   const Measurement& area = found[0].damage.metrics->area_m2;
   EXPECT_NEAR(area.value, 3.1416 * 0.25 * 0.25, 2 * area.std_error);
   EXPECT_NEAR(static_cast<double>(found[0].footprint.size()) * footprint_m * footprint_m, area.value, 0.03);
+}
+
+/// A rut of 20 mm that leads 60° to the right of the map's y axis, as the path of the camera does.
+TEST_F(RoadMapTest, RutIsFoundAlongPath) {
+  struct Rut {
+    double height(double x, double y) const {
+      const double across = (0.5 * x - std::sqrt(0.75) * y) / 0.35;
+      return -0.02 * std::max(0.0, 1 - across * across);
+    }
+  };
+  RoadMapOptions coarse = options();
+  coarse.cell_m = 0.02;
+  RoadMap map(folder_, coarse);
+  std::vector<std::array<double, 2>> path;
+  for (int i = 0; i < 8; ++i) {
+    path.push_back({std::sqrt(0.75) * (0.2 * i - 0.7), 0.5 * (0.2 * i - 0.7)});
+    map.add(
+        TestFrame(looking_down(path.back()[0], path.back()[1], 4), Rut(), 0.02, static_cast<unsigned>(i + 1)).frame);
+  }
+  using Paths = std::vector<std::vector<std::array<double, 2>>>;
+  const auto ruts = [&](const Paths& paths) {
+    int count = 0;
+    for (const MapDamage& found : find_map_damage(map, {}, paths)) {
+      count += found.damage.metrics->distress == Distress::rut ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(ruts({}), 0);
+  EXPECT_EQ(ruts(Paths{path}), 1);
+  std::vector<std::array<double, 2>> mirrored = path;
+  for (auto& point : mirrored) point[0] = -point[0];
+  EXPECT_EQ(ruts(Paths{mirrored}), 0);
 }
 
 // The map's heights are as precise with coarse cells, and so is what is found in them.

@@ -277,6 +277,32 @@ TEST(Odometry, FollowsStreetBackwards) {
   }
 }
 
+/// A bag that has lost five pairs numbers the next one as if nothing was missing. Its time tells how far the camera
+/// went.
+TEST(Odometry, TimesTellOfMissingFrames) {
+  const synth::Scene street = test::smaller_scene("street", 2);
+  constexpr double step_m = 1.2, period_s = 0.1;
+  std::vector<KnownFrame> frames = street_frames(street, step_m, 4);
+  synth::Scene later = street;
+  constexpr int step_after_gap = 9;
+  later.rig.y_m = step_m * step_after_gap;
+  frames.push_back(known_frame(later));
+  const auto last_of = [&](bool has_times) {
+    Odometry odometry(street.rig.calibration());
+    for (int i = 0; i < 5; ++i) {
+      OdometryFrame maps = frames[static_cast<std::size_t>(i)].maps();
+      if (has_times) maps.time_s = 1000 + period_s * (i < 4 ? i : step_after_gap);
+      odometry.add(i, maps);
+    }
+    return std::pair{odometry.trajectory().frames.back(), odometry.links().back()};
+  };
+  EXPECT_EQ(last_of(false).second.status, LinkStatus::weak) << "it may find it all the same";
+  const auto& [pose, link] = last_of(true);
+  EXPECT_EQ(pose.piece, 0);
+  EXPECT_EQ(link.status, LinkStatus::good);
+  EXPECT_LT(distance(pose_error(pose, frames.front(), frames.back())), 0.05);
+}
+
 TEST(Odometry, ThreadsDoNotMatter) {
   const StereoCalibration calibration = test::smaller_scene("uav", 2).rig.calibration();
   OdometryOptions options;

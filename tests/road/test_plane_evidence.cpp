@@ -334,6 +334,26 @@ TEST(TiltLimit, PoseWeightFollowsTiltAndHeight) {
               71 / 359.0 / 0.3 / (1 + scale * scale + depth * depth), 1e-9);
 }
 
+/// Level planes a baseline and ten baselines below the camera: ½ and 1/1.01 of the evidence count.
+TEST(RoadAssessment, WhatMayBeABonnetNeedsMoreEvidence) {
+  const StereoCalibration rig{700, 320, 180, 0.2, 0, 640, 360};
+  const TiltLimit limit(640, 360, rig, 30);
+  const auto status = [&](double baselines, double evidence) {
+    PlaneFitStatistics fit;
+    fit.plane = {-180 / baselines, 1 / baselines, 0};
+    fit.points = fit.inliers = 1000;
+    fit.found = true;
+    fit.rows_covered = 0.4;
+    RoadModelEstimate estimate;
+    assess_found_road(fit, evidence, limit, RoadModelOptions{}, estimate);
+    return estimate.status;
+  };
+  EXPECT_EQ(status(10, 0.0607), RoadStatus::weak);
+  EXPECT_EQ(status(10, 0.0605), RoadStatus::none);
+  EXPECT_EQ(status(1, 0.119), RoadStatus::none);
+  EXPECT_EQ(status(1, 0.121), RoadStatus::weak);
+}
+
 TEST(PlaneEvidence, LevelRoadIsTakenBeforeTiltedFront) {
   constexpr int width = 400, height = 240;
   const auto road = [](double, double v) { return 0.15 * (v - 60); };

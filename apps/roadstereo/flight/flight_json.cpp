@@ -107,6 +107,7 @@ Json inputs_json(const FlightSettings& settings, const io::StaticMaskRecord& sta
   return {{"source", source},
           {"calibration", calibration},
           {"mask", mask},
+          {"finds_white_level", !sets_white_level(settings.processing)},
           {"severity", settings.processing.severity == ProcessingSettings().severity
                            ? settings.processing.severity
                            : relative(settings.processing.severity)},

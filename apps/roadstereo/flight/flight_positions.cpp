@@ -83,7 +83,7 @@ double FlightPositions::distance_ahead_m(const Damage& damage) const {
 bool FlightPositions::has_moved(const io::FlightFrame& frame) {
   const bool stands = frame.pose && view_from_ && frame.pose->piece == view_from_->piece &&
                       is_same_view(view_from_->road_to_world, frame.pose->road_to_world, frame.height_m);
-  if (!stands) view_from_ = frame.pose;
+  if (!stands && frame.pose) view_from_ = frame.pose;
   return !stands;
 }
 

@@ -41,17 +41,17 @@ void RectifiedSource::prepare(const io::SourcePair& first) {
   prepared_ = true;
 }
 
-void RectifiedSource::find_white_level(io::SourcePair& pair) {
-  if (!finds_white_ || pair.left.sample != SampleType::u16 || pair.right.sample != SampleType::u16) return;
-  white_level_ = std::max(white_level_, io::find_white_level(pair.left.view(), pair.right.view()));
-  pair.white_level = white_level_;
+/// White level that a pair needs; 0 where it is not to be found.
+double RectifiedSource::needed_white_level(const io::SourcePair& pair) const {
+  if (!finds_white_ || pair.left.sample != SampleType::u16 || pair.right.sample != SampleType::u16) return 0;
+  return io::find_white_level(pair.left.view(), pair.right.view());
 }
 
 void RectifiedSource::rectify(io::SourcePair& pair) {
   if (!pair.error.empty()) return;
   try {
     if (!prepared_) prepare(pair);
-    find_white_level(pair);
+    const double needed = needed_white_level(pair);  // the rectified images overshoot
     if (rectifier_) {
       io::RectifiedPair rectified = rectifier_->rectify(pair.left, pair.right);
       pair.left = std::move(rectified.left);
@@ -59,6 +59,9 @@ void RectifiedSource::rectify(io::SourcePair& pair) {
     } else if (calibration_) {
       calibration_->validate(pair.left.width, pair.left.height, file_name_);
     }
+    if (needed == 0) return;
+    white_level_ = std::max(white_level_, needed);
+    pair.white_level = white_level_;
   } catch (const SystemError&) {
     throw;
   } catch (const Error& error) {

@@ -40,7 +40,7 @@ class RectifiedSource {
 
  private:
   void prepare(const io::SourcePair& first);
-  void find_white_level(io::SourcePair& pair);
+  double needed_white_level(const io::SourcePair& pair) const;
 
   std::unique_ptr<io::FrameSource> source_;
   std::optional<io::CalibrationFile> file_;

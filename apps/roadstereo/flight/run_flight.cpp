@@ -126,6 +126,7 @@ void FlightPipeline::require_unchanged(const std::optional<io::SourcePair>& agai
 void FlightPipeline::seek() {
   io::FrameSource& source = flight_.source.source();
   if (!last_ || from_first_) return source.skip(settings_.from);
+  flight_.source.set_white_level(last_->white_level);
   source.skip(last_->index);
   std::optional<io::SourcePair> again = flight_.source.next();
   require_unchanged(again);

@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <fstream>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -28,22 +30,32 @@ void make_folder(const fs::path& folder) {
   if (error) fail("cannot record to ", folder.string(), ": ", error.message());
 }
 
-void require_no_recording(const fs::path& folder) {
+void require_no_recording(const fs::path& folder, const std::string& calibration) {
   std::error_code ignored;
   for (const char* name : {"left", "right", "times.txt"}) {
     if (fs::exists(folder / name, ignored)) {
       fail("cannot record to ", folder.string(), ": it already contains ", name, "; --record needs a new folder");
     }
   }
+  const fs::path file = folder / "calibration.yaml";
+  if (calibration.empty() || !fs::exists(file, ignored)) return;
+  std::ifstream stream(file, std::ios::binary);
+  const std::string present{std::istreambuf_iterator<char>(stream), {}};
+  if (present != calibration) {
+    fail("cannot record to ", folder.string(), ": it already contains another calibration.yaml; --record needs a new ",
+         "folder");
+  }
 }
 
 }  // namespace
 
 RecordingFolder::RecordingFolder(fs::path folder, const std::string& calibration) : folder_(std::move(folder)) {
-  require_no_recording(folder_);
+  require_no_recording(folder_, calibration);
   make_folder(folder_ / "left");
   make_folder(folder_ / "right");
-  if (!calibration.empty()) write_file_atomically(folder_ / "calibration.yaml", bytes_of(calibration));
+  const fs::path file = folder_ / "calibration.yaml";
+  wrote_calibration_ = !calibration.empty() && !fs::exists(file);
+  if (wrote_calibration_) write_file_atomically(file, bytes_of(calibration));
   const fs::path times = folder_ / "times.txt";
   times_ = ::open(times.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
   if (times_ < 0) fail("cannot write ", times.string(), ": ", std::generic_category().message(errno));
@@ -53,7 +65,8 @@ RecordingFolder::~RecordingFolder() {
   ::close(times_);
   if (pairs_ > 0) return;
   std::error_code ignored;  // nothing was recorded: the folder can be reused
-  for (const char* name : {"left", "right", "times.txt", "calibration.yaml"}) fs::remove(folder_ / name, ignored);
+  for (const char* name : {"left", "right", "times.txt"}) fs::remove(folder_ / name, ignored);
+  if (wrote_calibration_) fs::remove(folder_ / "calibration.yaml", ignored);
 }
 
 /// Writes a line atomically, too.

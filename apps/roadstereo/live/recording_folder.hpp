@@ -29,6 +29,7 @@ class RecordingFolder {
 
   std::filesystem::path folder_;
   std::int64_t pairs_ = 0;
+  bool wrote_calibration_ = false;
   int times_ = -1;  ///< file descriptor of times.txt
   Clock::time_point saved_{};
 };

@@ -48,7 +48,7 @@ class MapBuilder {
       frames += static_cast<std::int64_t>(passes.back().poses.size());
     }
     restore();
-    first_poses_ = &passes.front().poses;
+    first_pass_ = &passes.front();
     Progress progress(frames, state_.frames, plan_.quiet);
     while (state_.pass < static_cast<int>(passes.size())) {
       add_pass(passes[static_cast<std::size_t>(state_.pass)], progress);
@@ -292,24 +292,31 @@ class MapBuilder {
   /// The cell, or a larger one up to 5 cm with which rasters of the first recording do not have too many.
   double affordable_cell_m(double suggested_m) {
     constexpr double largest_m = 0.05, margin_m = 20;  // of road around the poses
-    std::array<double, 3> span{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto [low, high] = std::minmax_element(
-          first_poses_->begin(), first_poses_->end(), [k = 4 * axis + 3](const auto& one, const auto& other) {
-            return one.second.camera_to_world[k] < other.second.camera_to_world[k];
-          });
-      span[axis] =
-          high->second.camera_to_world[4 * axis + 3] - low->second.camera_to_world[4 * axis + 3] + 2 * margin_m;
+    std::array<std::vector<double>, 2> at = positions_m(*first_pass_);
+    std::array<double, 2> size_m{};
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      if (at[axis].empty()) return suggested_m;
+      const auto [low, high] = std::minmax_element(at[axis].begin(), at[axis].end());
+      size_m[axis] = *high - *low + 2 * margin_m;
     }
-    std::sort(span.begin(), span.end());
-    const double least_m = std::sqrt(span[1] * span[2] / max_raster_cells);
+    const double least_m = std::sqrt(size_m[0] * size_m[1] / max_raster_cells);
     double cell_m = suggested_m;
     while (cell_m < std::min(least_m, largest_m)) cell_m = round_length(2.5 * cell_m);
     if (cell_m > suggested_m) {
       add_reason(fmt::format("cells of {} m instead of {} m, since the poses lie in a box of {:.0f} × {:.0f} m", cell_m,
-                             suggested_m, span[2], span[1]));
+                             suggested_m, size_m[0], size_m[1]));
     }
     return cell_m;
+  }
+
+  /// x and y of the cameras of a recording in the map.
+  std::array<std::vector<double>, 2> positions_m(const Pass& pass) const {
+    std::array<std::vector<double>, 2> at;
+    for (const auto& [frame, pose] : pass.poses) {
+      const RigidTransform camera_to_map = compose(state_.world_to_map, pose.camera_to_world);
+      for (std::size_t axis = 0; axis < 2; ++axis) at[axis].push_back(camera_to_map[4 * axis + 3]);
+    }
+    return at;
   }
 
   /// Sets cells and axes: those of the road under the first camera, or with --crs those of the trajectory, with an
@@ -317,27 +324,23 @@ class MapBuilder {
   void set_axes(const FrameResult& first, const FramePose& pose, const StereoCalibration& calibration) {
     const DisparityPlane& road = first.geometry.plane;
     const int width = first.disparity.width(), height = first.disparity.height();
+    if (plan_.crs.empty()) {
+      state_.world_to_map = compose(camera_to_road(road, calibration), inverse(pose.camera_to_world));
+    } else {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        state_.origin_m[axis] = std::floor(pose.camera_to_world[4 * axis + 3]);
+        state_.world_to_map[4 * axis + 3] = -state_.origin_m[axis];
+      }
+    }
     state_.cell_m =
         plan_.cell_m > 0 ? plan_.cell_m : affordable_cell_m(suggested_cell_m(road, calibration, width, height));
     map_options_ = map_options(state_.cell_m);
-    if (plan_.crs.empty()) {
-      state_.world_to_map = compose(camera_to_road(road, calibration), inverse(pose.camera_to_world));
-      return;
-    }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      state_.origin_m[axis] = std::floor(pose.camera_to_world[4 * axis + 3]);
-      state_.world_to_map[4 * axis + 3] = -state_.origin_m[axis];
-    }
   }
 
   /// Throws Error if the box around the poses of a recording and what is mapped of its day has too many cells for
   /// rasters.
   void require_extent(const Pass& pass, const MapPass& from) const {
-    std::array<std::vector<double>, 2> at;
-    for (const auto& [frame, pose] : pass.poses) {
-      const RigidTransform camera_to_map = compose(state_.world_to_map, pose.camera_to_world);
-      for (std::size_t axis = 0; axis < 2; ++axis) at[axis].push_back(camera_to_map[4 * axis + 3]);
-    }
+    const std::array<std::vector<double>, 2> at = positions_m(pass);
     const MapBox mapped = days_.at(*state_.day).map.bounds();
     const std::array<int, 2> first{mapped.i0, mapped.j0}, count{mapped.columns, mapped.rows};
     std::array<double, 2> size_m{}, middle_m{};
@@ -372,9 +375,9 @@ class MapBuilder {
   const StopSignals& stop_;
   MapJournal journal_;
   MapState state_;
-  std::map<std::size_t, DayMap> days_;  ///< by index of their names, those with a mapped frame
+  std::map<std::size_t, DayMap> days_;  ///< by index of their names, those with a road in a frame
   RoadMapOptions map_options_;
-  const std::map<std::int64_t, FramePose>* first_poses_ = nullptr;  ///< of the first recording
+  const Pass* first_pass_ = nullptr;
   DamageMap damage_;
 };
 

@@ -58,9 +58,7 @@ std::vector<MapPass> runs_of(const MapSettings& settings) {
     }
     passes.back().options.threads = settings.processing.threads;
     if (settings.processing.engine != ProcessingSettings().engine) passes.back().options.engine = options.engine;
-    if (settings.processing.severity != ProcessingSettings().severity) {
-      passes.back().options.damage.severity = options.damage.severity;
-    }
+    if (settings.sets_severity) passes.back().options.damage.severity = options.damage.severity;
     if (options.rig_bias) passes.back().options.rig_bias = options.rig_bias;
   }
   return passes;

@@ -18,6 +18,7 @@ struct MapSettings : MapOptions {
   std::vector<std::string> calibration;
   std::string output;
   ProcessingSettings processing;
+  bool sets_severity = false;  ///< instead of that of the runs
   SourceSettings source_settings;
   bool json = false;
 

@@ -74,7 +74,8 @@ MapPass pass_of(const fs::path& folder, const Json& summary) {
   pass.options.damage.severity = io::read_severity_scheme(is_file ? input_file(folder, severity) : severity);
   const std::string bias = inputs.at("rig_bias").get<std::string>();
   if (!bias.empty()) pass.options.rig_bias = io::read_rig_bias(input_file(folder, bias));
-  pass.find_white_level = pass.options.white_level == 0;
+  pass.find_white_level = inputs.value("finds_white_level", pass.options.white_level == 0);
+  if (pass.find_white_level) pass.options.white_level = 0;
   return pass;
 }
 

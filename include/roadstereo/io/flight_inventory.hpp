@@ -53,8 +53,8 @@ std::vector<RoadDamage> worst_first(const std::vector<RoadDamage>& damages, bool
 /// A region counts as damage of the road if it is a damage in at least one frame and the two views with the highest
 /// confidence agree: the mean of their log-odds is at least that of the minimum confidence. Otherwise noise in one of
 /// many frames would suffice. A view is what successive frames show while the camera stands, by their poses; its
-/// log-odds are the mean of those of its frames. Without poses every frame is one. A region that only one view shows is
-/// decided by that view.
+/// log-odds are the mean of those of its frames, those without a pose included. Without any pose every frame is one. A
+/// region that only one view shows is decided by that view.
 class FlightInventory {
  public:
   /// `min_confidence`: DamageOptions::min_confidence, 0 … 1.

@@ -225,7 +225,8 @@ void FlightInventory::remember(std::vector<Sighting> sightings) {
 
 /// Whether the frame begins a view.
 bool FlightInventory::has_moved(const FlightFrame& frame) const {
-  if (!frame.pose || !view_from_ || frame.pose->piece != view_from_->piece) return true;
+  if (!frame.pose) return !view_from_;  // a truck that hides the road does not move the camera
+  if (!view_from_ || frame.pose->piece != view_from_->piece) return true;
   return !is_same_view(view_from_->road_to_world, frame.pose->road_to_world, frame.height_m);
 }
 

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <limits>
 #include <optional>
 #include <span>
+#include <system_error>
 
 #include "io/calibration_formats.hpp"
 #include "io/fixed_text.hpp"
@@ -162,15 +164,20 @@ void add_standard_errors(const std::string& where, const Columns& columns, const
   point.vertical_sd_m = standard_error(where, columns.vertical_sd, cells);
 }
 
+/// Whether the speed is known and too small for a course.
+bool stands(const Columns& columns, const std::vector<std::string_view>& cells) {
+  if (!columns.speed) return false;
+  const std::string_view text = cells[columns.speed->index];
+  double speed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), speed);
+  return error == std::errc() && end == text.data() + text.size() && speed < min_course_m_s;
+}
+
 /// NaN if unknown, as the course is of a receiver that stands.
 double heading_of(const std::string& where, const Columns& columns, const std::vector<std::string_view>& cells) {
   const std::optional<Column>& column = columns.heading ? columns.heading : columns.course;
   if (!column) return std::numeric_limits<double>::quiet_NaN();
-  if (!columns.heading && columns.speed) {
-    const std::string_view speed = cells[columns.speed->index];
-    const bool moves = speed.empty() || parse_number(where, columns.speed->name, speed) >= min_course_m_s;
-    if (!moves) return std::numeric_limits<double>::quiet_NaN();
-  }
+  if (!columns.heading && stands(columns, cells)) return std::numeric_limits<double>::quiet_NaN();
   return parse_heading(where, column->name, cells[column->index]);
 }
 

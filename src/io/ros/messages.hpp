@@ -41,7 +41,7 @@ RosMessage camera_info(const RosHeader& header, const StereoCalibration& calibra
 RosMessage disparity_image(const RosHeader& header, ImageView<const float> disparity,
                            const StereoCalibration* calibration);
 
-/// sensor_msgs/PointCloud2 of the pixels with a disparity, not farther than `farthest_baselines`, row by row, camera
+/// sensor_msgs/PointCloud2 of the pixels with a disparity, of at least `min_cloud_disparity_px`, row by row, camera
 /// frame: float32 x, y, z, sigma (standard error of z, metres), intensity (0 … 255).
 RosMessage point_cloud(const RosHeader& header, const RosPoints& maps, const StereoCalibration& calibration);
 

@@ -1,6 +1,7 @@
 // The inventory of a flight's damages.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -131,6 +132,10 @@ TEST(FlightInventory, FramesOfStandingCameraAreOneView) {
   const auto candidate_of = [](const std::vector<double>& at_m, const std::vector<double>& confidences) {
     FlightInventory inventory;
     for (std::size_t i = 0; i < confidences.size(); ++i) {
+      if (std::isnan(at_m[i])) {
+        inventory.add(frame_of(static_cast<std::int64_t>(i), {}));
+        continue;
+      }
       FlightFrame frame = frame_along(static_cast<std::int64_t>(i), at_m[i], {8});
       frame.height_m = 1.5;
       frame.damages[0].confidence = confidences[i];
@@ -143,6 +148,7 @@ TEST(FlightInventory, FramesOfStandingCameraAreOneView) {
   EXPECT_TRUE(candidate_of({0, 0, 0.003, -0.003, 0.002}, noise)) << "0.015 m are a hundredth of the height";
   EXPECT_FALSE(candidate_of({0, 0.1, 0.2, 0.3, 0.4}, noise));
   EXPECT_FALSE(candidate_of({0, 0, 0, 0, 0}, {0.4, 0.6, 0.6, 0.5, 0.6}));
+  EXPECT_TRUE(candidate_of({0, 0, NAN, 0, 0}, {0.2, 0.55, 0, 0.55, 0.2})) << "a truck hides the road for a while";
   // 0.2 and 0.55 while it stands are worth 0.36; 0.75 from elsewhere outweighs it, 0.6 does not.
   EXPECT_FALSE(candidate_of({0, 0, 1}, {0.2, 0.55, 0.75}));
   EXPECT_TRUE(candidate_of({0, 0, 1}, {0.2, 0.55, 0.6}));

@@ -418,6 +418,7 @@ TEST_F(TrackFile, IgnoresCourseOfCsvWhileStanding) {
   const std::vector<TrackPoint> course = points("time,lat,lon,bearing,speed\n" + rows);
   EXPECT_NEAR(turn_deg(0, course[0].heading_deg), 0, 1e-6) << "of the way";
   EXPECT_DOUBLE_EQ(course[1].heading_deg, 90);
+  EXPECT_DOUBLE_EQ(points("time,lat,lon,bearing,speed\n10,50,8,90,nan\n11,50.0001,8,90,\n")[0].heading_deg, 90);
   EXPECT_DOUBLE_EQ(points("time,lat,lon,heading,speed\n" + rows)[0].heading_deg, 90);
 }
 
