@@ -348,8 +348,10 @@ TEST_F(RoadMapTest, RutIsFoundAlongPath) {
   std::vector<std::array<double, 2>> path;
   for (int i = 0; i < 8; ++i) {
     path.push_back({std::sqrt(0.75) * (0.2 * i - 0.7), 0.5 * (0.2 * i - 0.7)});
-    map.add(
-        TestFrame(looking_down(path.back()[0], path.back()[1], 4), Rut(), 0.02, static_cast<unsigned>(i + 1)).frame);
+    constexpr double noise_px = 0.01;
+    TestFrame view(looking_down(path.back()[0], path.back()[1], 3), Rut(), noise_px, static_cast<unsigned>(i + 1));
+    view.sigma.assign(width, height, static_cast<float>(noise_px));
+    map.add(view.frame);
   }
   using Paths = std::vector<std::vector<std::array<double, 2>>>;
   const auto ruts = [&](const Paths& paths) {
