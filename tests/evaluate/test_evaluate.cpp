@@ -169,8 +169,8 @@ TEST_F(SlowEvaluate, AblationComparesEveryVariantWithPreset) {
   // Whole pixels for every disparity, as against a parabola: the error is uniform in ±0.5 px, its median 0.25 px.
   EXPECT_NEAR(figure("paper, no sub-pixel parabola", "clean_median_error_px"), 0.25, 0.05);
   EXPECT_LT(figure("paper", "clean_median_error_px"), 0.1);
-  EXPECT_GT(figure("whole-pixel shift, no Lucas–Kanade step", "clean_median_error_px"),
-            figure("default", "clean_median_error_px"));
+  // A saw-tooth of half a pixel from row to row, which the refinement takes out of the road, but not out of damage.
+  EXPECT_GT(figure("whole-pixel shift, no Lucas–Kanade step", "damage_e_r_px"), figure("default", "damage_e_r_px"));
   EXPECT_FALSE(variants[0].contains("kitti_e_r_px"));
   EXPECT_EQ(variants.back()["preset"], "paper");
   expect_complaint(run("ablation --kitti absent"), "absent");
