@@ -235,12 +235,11 @@ class MapBuilder {
       pipeline.find_damage(damage_);
       const PipelineOptions& options = pipeline.options();
       withhold_severity(measure_health(result, damage_, calibration, options.damage, options.threads), damage_);
-      const auto foot_m = transform_point(camera_to_map, road_axes(ground_plane(road, calibration)).origin_m);
       MappedFrame mapped{state_.pass,
                          pose.frame,
                          *state_.day,
                          pose.piece != state_.piece,
-                         {foot_m[0], foot_m[1]},
+                         {camera_to_map[3], camera_to_map[7]},
                          locate_damage(damage_, road, calibration, camera_to_map)};
       const std::size_t cells = map_of(*state_.day)
                                     .map.add({result.disparity, result.sigma, pair.left.view(),
@@ -266,7 +265,7 @@ class MapBuilder {
   void add_record(MappedFrame frame) {
     DayMap& day = map_of(frame.day);
     if (frame.new_path || day.paths.empty()) day.paths.emplace_back();
-    day.paths.back().push_back(frame.foot_m);
+    day.paths.back().push_back(frame.camera_m);
     for (MapDamage& found : frame.found) {
       day.sightings.push_back({frame.pass, static_cast<int>(frame.index), std::move(found)});
     }

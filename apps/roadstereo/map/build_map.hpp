@@ -18,7 +18,7 @@ struct DayMap {
   std::string name;  ///< as given, or the date in UTC; empty: unknown
   RoadMap map;
   std::vector<DamageSighting> sightings;
-  /// Foot of the camera in the map, frame by frame, of each piece
+  /// (x, y) of the camera in the map, frame by frame, of each piece
   std::vector<std::vector<std::array<double, 2>>> paths;
 };
 

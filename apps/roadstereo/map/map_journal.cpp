@@ -25,7 +25,7 @@ Json frame_json(const MappedFrame& frame) {
           {"index", frame.index},
           {"day", frame.day},
           {"new_path", frame.new_path},
-          {"foot_m", frame.foot_m},
+          {"camera_m", frame.camera_m},
           {"places", places},
           {"frame", io::flight_frame_json(damages)}};
 }
@@ -37,7 +37,7 @@ MappedFrame read_frame(const std::string& line) {
   frame.index = json.at("index").get<std::int64_t>();
   frame.day = json.at("day").get<std::size_t>();
   frame.new_path = json.at("new_path").get<bool>();
-  frame.foot_m = json.at("foot_m").get<std::array<double, 2>>();
+  frame.camera_m = json.at("camera_m").get<std::array<double, 2>>();
   io::FlightFrame damages = io::read_flight_frame(json.at("frame").get<std::string>());
   for (std::size_t k = 0; k < damages.damages.size(); ++k) {
     const Json& place = json.at("places").at(k);

@@ -23,7 +23,7 @@ struct MappedFrame {
   std::int64_t index = 0;
   std::size_t day = 0;    ///< index of its name
   bool new_path = false;  ///< begins a piece
-  std::array<double, 2> foot_m{};
+  std::array<double, 2> camera_m{};
   std::vector<MapDamage> found;
 };
 
