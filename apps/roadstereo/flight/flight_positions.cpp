@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/degrees.hpp"
-#include "core/same_view.hpp"
+#include "io/flight/standing.hpp"
 
 namespace roadstereo::cli {
 
@@ -81,8 +81,7 @@ double FlightPositions::distance_ahead_m(const Damage& damage) const {
 
 /// Whether the camera has left the place of an earlier frame, by the poses; true without them.
 bool FlightPositions::has_moved(const io::FlightFrame& frame) {
-  const bool stands = frame.pose && view_from_ && frame.pose->piece == view_from_->piece &&
-                      is_same_view(view_from_->road_to_world, frame.pose->road_to_world, frame.height_m);
+  const bool stands = io::stands_at(view_from_, frame);
   if (!stands && frame.pose) view_from_ = frame.pose;
   return !stands;
 }

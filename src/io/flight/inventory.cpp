@@ -7,9 +7,9 @@
 
 #include "core/log_odds.hpp"
 #include "core/order_statistics.hpp"
-#include "core/same_view.hpp"
 #include "io/damage_colours.hpp"
 #include "io/flight/outline_overlap.hpp"
+#include "io/flight/standing.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
 #include "roadstereo/rigid_transform.hpp"
 
@@ -226,8 +226,7 @@ void FlightInventory::remember(std::vector<Sighting> sightings) {
 /// Whether the frame begins a view.
 bool FlightInventory::has_moved(const FlightFrame& frame) const {
   if (!frame.pose) return !view_from_;  // a truck that hides the road does not move the camera
-  if (!view_from_ || frame.pose->piece != view_from_->piece) return true;
-  return !is_same_view(view_from_->road_to_world, frame.pose->road_to_world, frame.height_m);
+  return !stands_at(view_from_, frame);
 }
 
 void FlightInventory::add_confidence(double confidence, Agreement& views) const {
