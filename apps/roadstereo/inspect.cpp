@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "core/parallel.hpp"
 #include "find_damage_or_warn.hpp"
 #include "flight/flight_folder.hpp"
 #include "given_disparity.hpp"
@@ -77,7 +78,7 @@ void match(Inspection& inspection) {
 
 void process(Inspection& inspection) {
   inspection.pair.disparity.empty() ? match(inspection) : use_given_disparity(inspection);
-  inspection.threads = used_threads(inspection.options);
+  inspection.threads = resolve_threads(inspection.options.threads);
   inspection.warnings = inspection.result.warnings;
   find_damage_or_warn(inspection.result, inspection.pair.calibration, inspection.options.damage,
                       inspection.options.threads, inspection.damage, inspection.health, inspection.warnings);

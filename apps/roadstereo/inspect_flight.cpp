@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "auto_mask.hpp"
+#include "core/parallel.hpp"
 #include "flight/flight_results.hpp"
 #include "flight/provenance.hpp"
 #include "flight/run_flight.hpp"
@@ -191,7 +192,7 @@ void inspect_flight(FlightSettings settings) {
   run.calibration_format = source.calibration_format();
   run.calibration = source.calibration();
   run.engine = resolve_engine_name(run.options.engine);
-  run.threads = used_threads(run.options);
+  run.threads = resolve_threads(run.options.threads);
 
   if (mcap) mcap->finish();
   const std::string json = results.write(settings, run, folder);

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <thread>
 
 #include "roadstereo/io/rig_bias_file.hpp"
 #include "roadstereo/io/severity_file.hpp"
@@ -68,11 +67,6 @@ PipelineOptions make_options(const ProcessingSettings& processing) {
 bool sets_white_level(const ProcessingSettings& processing) {
   return std::any_of(processing.settings.begin(), processing.settings.end(),
                      [](const std::string& setting) { return split_setting(setting).first == "white_level"; });
-}
-
-int used_threads(const PipelineOptions& options) {
-  if (options.threads > 0) return options.threads;
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 }  // namespace roadstereo::cli

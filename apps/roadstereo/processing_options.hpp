@@ -33,7 +33,4 @@ PipelineOptions make_options(const ProcessingSettings& processing);
 /// Returns whether the white level is set by the user.
 bool sets_white_level(const ProcessingSettings& processing);
 
-/// Returns the number of worker threads.
-int used_threads(const PipelineOptions& options);
-
 }  // namespace roadstereo::cli

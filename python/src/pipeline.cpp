@@ -33,9 +33,11 @@ class SharedPipeline {
     const FrameView left_view = frame_view(left, "left", order);
     const FrameView right_view = frame_view(right, "right", order);
     auto frame = std::make_unique<ProcessedFrame>();
-    frame->calibration = pipeline_.calibration();
-    frame->options = pipeline_.options();
-    call_([&] { pipeline_.process(left_view, right_view, frame->result); });
+    call_([&] {
+      frame->calibration = pipeline_.calibration();
+      frame->options = pipeline_.options();
+      pipeline_.process(left_view, right_view, frame->result);
+    });
     return frame;
   }
 
@@ -70,7 +72,9 @@ class SharedPipeline {
   }
 
   py::dict options() const { return option_values(pipeline_.options()); }
-  const std::string& engine_name() const { return pipeline_.engine_name(); }
+  std::string engine_name() {  // which `set_mask` may change
+    return call_([&] { return pipeline_.engine_name(); });
+  }
   const std::optional<StereoCalibration>& calibration() const { return pipeline_.calibration(); }
 
  private:

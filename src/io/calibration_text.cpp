@@ -3,18 +3,11 @@
 #include <cmath>
 
 #include "io/calibration_formats.hpp"
+#include "io/plain_text.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
 namespace {
-
-constexpr std::string_view white_space = " \t\r\n\v\f";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(white_space);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(white_space) - first + 1);
-}
 
 /// from_chars accepts neither YAML's .nan and .inf nor a leading plus.
 std::string_view plain_number(std::string_view text) {

@@ -200,13 +200,14 @@ std::vector<std::uint8_t> encode_kitti_png(ImageView<const float> disparity) {
   return encode(".png", mat, {});
 }
 
-std::vector<std::uint8_t> encode_png(const FrameView& frame) {
-  if (frame.sample != SampleType::u8) fail("the frame to encode has 16-bit samples; they must have 8 bits");
+std::vector<std::uint8_t> encode_png(const FrameView& frame, std::optional<int> compression) {
+  std::vector<int> parameters;
+  if (compression) parameters = {cv::IMWRITE_PNG_COMPRESSION, *compression};
   const cv::Mat mat = mat_over(frame);
-  if (frame.order != ChannelOrder::rgb && frame.order != ChannelOrder::rgba) return encode(".png", mat, {});
+  if (frame.order != ChannelOrder::rgb && frame.order != ChannelOrder::rgba) return encode(".png", mat, parameters);
   cv::Mat swapped;
   cv::cvtColor(mat, swapped, frame.order == ChannelOrder::rgb ? cv::COLOR_RGB2BGR : cv::COLOR_RGBA2BGRA);
-  return encode(".png", swapped, {});
+  return encode(".png", swapped, parameters);
 }
 
 }  // namespace roadstereo::io

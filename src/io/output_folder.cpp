@@ -231,6 +231,9 @@ void OutputFolder::commit() {
   } catch (const fs::filesystem_error& error) {
     moves.take_back();
     fail_write(target, error.code().value());
+  } catch (...) {
+    moves.take_back();
+    throw;
   }
   std::error_code ignored;
   for (const std::string& name : removed_) fs::remove(folder_ / name, ignored);

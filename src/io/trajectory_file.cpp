@@ -78,7 +78,7 @@ Trajectory read_trajectory(const std::string& path) {
       missing = missing || !std::isfinite(*value);
       numbers.push_back(*value);
     }
-    if (numbers.empty() && file.peek() == EOF) break;
+    if (numbers.empty() && (file >> std::ws).eof()) break;
     if (numbers.size() != 12) {
       fail(path, ", line ", row + 1, " has ", numbers.size(),
            " numbers; a pose has 12, the 3×4 matrix from the camera to the world");

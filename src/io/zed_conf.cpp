@@ -4,6 +4,7 @@
 #include <opencv2/core/affine.hpp>
 
 #include "io/calibration_formats.hpp"
+#include "io/plain_text.hpp"
 #include "io/rig_camera.hpp"
 #include "roadstereo/error.hpp"
 
@@ -21,13 +22,6 @@ constexpr std::array<Resolution, 6> resolutions{{{"2k", 2208, 1242},
                                                  {"hd", 1280, 720},
                                                  {"svga", 960, 600},
                                                  {"vga", 672, 376}}};
-
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return result;
-}
 
 /// Values of an INI file by "section:key" in lower case.
 class IniFile {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/require_range.hpp"
+#include "mapping/forward_path.hpp"
 #include "roadstereo/road_profile.hpp"
 #include "roadstereo/roughness_index.hpp"
 
@@ -13,93 +14,6 @@ namespace roadstereo {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-/// A place on the path.
-struct Station {
-  double s_m = 0;
-  std::array<double, 2> at_m{};
-  std::array<double, 2> ahead{};  ///< unit vector
-
-  std::array<double, 2> beside(double right_m, double forward_m) const {
-    return {at_m[0] + forward_m * ahead[0] + right_m * ahead[1], at_m[1] + forward_m * ahead[1] - right_m * ahead[0]};
-  }
-};
-
-constexpr double min_step_m = 0.02;
-
-/// Builds the parts of forward_paths().
-class PathParts {
- public:
-  using Point = std::array<double, 2>;
-
-  void add(const Point& point) {
-    constexpr double max_back_m = 5;  // farther back is another pass
-    if (parts_.empty()) parts_.push_back({point});
-    const double step_m = distance(parts_.back().back(), point);
-    if (step_m < min_step_m) return;
-    if (is_ahead(parts_.back(), point)) {
-      parts_.back().push_back(point);
-      back_.clear();
-      return;
-    }
-    back_.push_back(point);
-    if (step_m <= max_back_m) return;
-    const std::vector<Point> next = std::exchange(back_, {});
-    parts_.push_back({next.front()});
-    for (const Point& each : next) add(each);
-  }
-  std::vector<std::vector<Point>> take() { return std::move(parts_); }
-
- private:
-  static double distance(const Point& a, const Point& b) { return std::hypot(b[0] - a[0], b[1] - a[1]); }
-  static bool is_ahead(const std::vector<Point>& part, const Point& point) {
-    if (part.size() < 2) return true;
-    const Point &before = part[part.size() - 2], &last = part.back();
-    return (point[0] - last[0]) * (last[0] - before[0]) + (point[1] - last[1]) * (last[1] - before[1]) >= 0;
-  }
-
-  std::vector<std::vector<Point>> parts_;
-  std::vector<Point> back_;  ///< points behind the end of the last part
-};
-
-/// The first forward part of a path, by distance travelled.
-class Path {
- public:
-  explicit Path(std::span<const std::array<double, 2>> points) {
-    const auto parts = forward_paths(points);
-    if (parts.empty()) return;
-    points_ = parts.front();
-    distance_.push_back(0);
-    for (std::size_t i = 1; i < points_.size(); ++i) {
-      distance_.push_back(distance_.back() +
-                          std::hypot(points_[i][0] - points_[i - 1][0], points_[i][1] - points_[i - 1][1]));
-    }
-  }
-
-  double length_m() const { return distance_.empty() ? 0 : distance_.back(); }
-
-  Station at(double s_m) const {
-    constexpr double half_chord_m = 1;  // directions of single steps are noise
-    const auto before = point(std::max(0.0, s_m - half_chord_m)),
-               after = point(std::min(length_m(), s_m + half_chord_m));
-    const double length = std::hypot(after[0] - before[0], after[1] - before[1]);
-    return {s_m, point(s_m), {(after[0] - before[0]) / length, (after[1] - before[1]) / length}};
-  }
-
- private:
-  std::array<double, 2> point(double s_m) const {
-    const auto next =
-        std::clamp<std::ptrdiff_t>(std::upper_bound(distance_.begin(), distance_.end(), s_m) - distance_.begin(), 1,
-                                   static_cast<std::ptrdiff_t>(distance_.size()) - 1);
-    const auto k = static_cast<std::size_t>(next);
-    const double share = (s_m - distance_[k - 1]) / (distance_[k] - distance_[k - 1]);
-    return {points_[k - 1][0] + share * (points_[k][0] - points_[k - 1][0]),
-            points_[k - 1][1] + share * (points_[k][1] - points_[k - 1][1])};
-  }
-
-  std::vector<std::array<double, 2>> points_;
-  std::vector<double> distance_;
-};
 
 /// Mean height of a rectangle of the road.
 struct StripHeight {
@@ -113,7 +27,7 @@ class MapReader {
   explicit MapReader(const RoadMap& map) : map_(map), cell_m_(map.options().cell_m) {}
 
   /// Mean over `right_m` × `forward_m` around a point beside a station, weighted by the inverse variances.
-  StripHeight mean(const Station& station, double right_m, double forward_m, double wide_m, double long_m) {
+  StripHeight mean(const PathStation& station, double right_m, double forward_m, double wide_m, double long_m) {
     constexpr double window_cells = 21;  // diameter of the support of a disparity, which cells are about as large as
     const int across = std::max(1, static_cast<int>(std::lround(wide_m / cell_m_)));
     const int along = std::max(1, static_cast<int>(std::lround(long_m / cell_m_)));
@@ -190,7 +104,7 @@ class NoiseGaps {
   std::map<std::size_t, double> gaps_;
 };
 
-std::vector<TransverseProfile> measure_across(MapReader& reader, const Path& path, double cell_m,
+std::vector<TransverseProfile> measure_across(MapReader& reader, const ForwardPath& path, double cell_m,
                                               const LaneOptions& options) {
   const double spacing_m = std::max(0.1, cell_m);
   constexpr double resolvable_floors = 2, min_width_share = 0.5;
@@ -200,7 +114,7 @@ std::vector<TransverseProfile> measure_across(MapReader& reader, const Path& pat
   const auto stations = static_cast<int>(path.length_m() / options.station_m) + 1;
   for (int k = 0; k < stations; ++k) {
     const double s = k * options.station_m;
-    const Station station = path.at(s);
+    const PathStation station = path.at(s);
     std::vector<double> heights(count, nan);
     double variance = 0;
     std::size_t measured = 0;
@@ -261,7 +175,7 @@ void add_sections(std::span<const double> heights, double sigma_m, double start_
   }
 }
 
-void measure_along(MapReader& reader, const Path& path, double offset_m, const LaneOptions& options,
+void measure_along(MapReader& reader, const ForwardPath& path, double offset_m, const LaneOptions& options,
                    LaneProfiles& lane) {
   const double spacing_m = lane.spacing_m;
   std::vector<double> heights;
@@ -269,7 +183,7 @@ void measure_along(MapReader& reader, const Path& path, double offset_m, const L
   std::size_t measured = 0;
   const auto count = static_cast<std::size_t>(path.length_m() / spacing_m) + 1;
   for (std::size_t i = 0; i < count; ++i) {
-    const Station station = path.at(static_cast<double>(i) * spacing_m);
+    const PathStation station = path.at(static_cast<double>(i) * spacing_m);
     const StripHeight strip = reader.mean(station, offset_m, 0, options.strip_m, spacing_m);
     lane.longitudinal.push_back({offset_m, station.s_m, station.beside(offset_m, 0), strip.height_m, strip.sigma_m});
     heights.push_back(strip.height_m);
@@ -291,12 +205,6 @@ void measure_along(MapReader& reader, const Path& path, double offset_m, const L
 
 }  // namespace
 
-std::vector<std::vector<std::array<double, 2>>> forward_paths(std::span<const std::array<double, 2>> path) {
-  PathParts parts;
-  for (const auto& point : path) parts.add(point);
-  return parts.take();
-}
-
 void LaneOptions::validate() const {
   require_range("lane", "lane_width_m", lane_width_m, 0.5, 20.0);
   require_range("lane", "wheel_path_m", wheel_path_m, 0.0, 5.0);
@@ -314,7 +222,7 @@ LaneProfiles measure_lane(const RoadMap& map, std::span<const std::array<double,
   constexpr double spacing_m = 0.05;
   LaneProfiles lane;
   lane.spacing_m = std::clamp(map.options().cell_m, spacing_m, 0.5);
-  const Path path(points);
+  const ForwardPath path(points);
   if (path.length_m() < lane.spacing_m) return lane;
   MapReader reader(map);
   lane.transverse = measure_across(reader, path, map.options().cell_m, options);

@@ -9,7 +9,6 @@
 #include "core/require_size.hpp"
 #include "pipeline/picture_health.hpp"
 #include "pipeline/rectification_error.hpp"
-#include "road/black_border.hpp"
 
 namespace roadstereo {
 namespace {
@@ -55,8 +54,7 @@ double beyond_quadratic(const std::vector<RowSample>& samples, const DamageMap& 
 void measure_rectification(const FrameResult& frame, const DamageMap& damage,
                            const std::optional<StereoCalibration>& calibration, int threads, PairHealth& health) {
   constexpr double share = 0.9;
-  const PictureMask picture(frame.grey, frame.mask);
-  const std::vector<RowSample> samples = sample_row_alignment(frame.grey, frame.right, threads, picture.view());
+  const std::vector<RowSample> samples = sample_row_alignment(frame.grey, frame.right, threads, frame.mask);
   const auto fit = fit_rectification_error(samples, frame.grey.width(), frame.grey.height(), calibration);
   if (!fit) return;
   const auto& [offset, scale, turn, right, both] = fit->value;

@@ -11,7 +11,6 @@
 #include "core/require_size.hpp"
 #include "core/scratch.hpp"
 #include "pipeline/host_stages.hpp"
-#include "road/black_border.hpp"
 #include "road/rig_prior.hpp"
 #include "road/road_assessment.hpp"
 #include "road/row_shift.hpp"
@@ -184,10 +183,9 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   const GreyPair on_host = stages->on_host(pair);
   if (options.check_rows) measure_rows(on_host, Rows::of_new_road);
   const GreyPair grey = align_on_host(on_host);
-  const PictureMask picture(grey.left, mask);
   const auto last = carried.road ? std::optional(carried.road->model) : std::nullopt;
-  result.road = roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads,
-                                                picture.view(), last);
+  result.road =
+      roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, mask, last);
   if (!result.road.has_road()) {
     result.warnings.push_back(format_message("no-road: no road was found (", result.road.reason,
                                              "): the pair was matched over all disparities up to a quarter "
@@ -227,10 +225,7 @@ void Pipeline::State::measure_rows(const GreyPair& grey, Rows of) {
   constexpr double max_offset_px = 0.5;
   constexpr double max_spread_px = 1.0;
   const bool is_measured = result.rows.points > 0;  // before the frame lost its tracked road
-  if (!is_measured) {
-    const PictureMask picture(grey.left, mask);
-    result.rows = measure_row_alignment(grey.left, grey.right, threads, picture.view());
-  }
+  if (!is_measured) result.rows = measure_row_alignment(grey.left, grey.right, threads, mask);
   carried.frames_since_rows = 0;
   const RowAlignment& rows = result.rows;
   if (!rows.known()) {
@@ -539,8 +534,9 @@ void Pipeline::set_mask(ImageView<const std::uint8_t> mask) {
   if (state_->engine_name == "cuda" && !mask.empty()) {
     if (state_->options.engine != "auto") fail("the engine cuda takes no mask; use another one, such as cpu");
     PipelineOptions on_host = state_->options;
-    on_host.engine = state_->engine_name = "cpu";
+    on_host.engine = "cpu";
     state_->stages = make_stages(on_host.engine, on_host, state_->calibration);
+    state_->engine_name = on_host.engine;
     state_->has_frame = state_->has_maps = false;
   }
   state_->mask.resize(mask.width(), mask.height());

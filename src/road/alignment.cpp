@@ -11,6 +11,8 @@
 #include "core/order_statistics.hpp"
 #include "core/parallel.hpp"
 #include "core/require_size.hpp"
+#include "core/scratch.hpp"
+#include "road/black_border.hpp"
 #include "road/block_alignment.hpp"
 #include "road/masked_blocks.hpp"
 #include "road/plane_fit.hpp"
@@ -31,8 +33,14 @@ constexpr int cells_down = 9;
 struct Pyramid {
   ImageView<const std::int16_t> left, right;
   int factor;
-  GreyImage small_left, small_right;
+  ImageView<const std::int16_t> small_left, small_right;
   MaskedBlocks masked;  ///< of the small left image
+};
+
+/// The matched points of one row of cells.
+struct CellRow {
+  std::array<RowSample, cells_across> samples;
+  std::size_t count = 0;
 };
 
 /// The surroundings of a pixel under a 3×3 binomial filter: interpolating them does not smooth them much further, so
@@ -156,12 +164,11 @@ std::optional<double> refined_offset(const Pyramid& pair, const Place& place, co
   return aligned->dv - shift_v;
 }
 
-/// The matched points of one row of cells.
-std::vector<RowSample> measure_cells(const Pyramid& pair, int cell_v) {
+CellRow measure_cells(const Pyramid& pair, int cell_v) {
   const int rows = 1 + pair.small_left.height() / 40;
   const int columns = 2 * pair.small_left.width() / 5;
   const int reach = pair.factor / 2 + 1;
-  std::vector<RowSample> samples;
+  CellRow row;
   Strip strip{};
   for (int cell_u = 0; cell_u < cells_across; ++cell_u) {
     const auto place = best_place(pair.small_left, pair.masked, cell_u * pair.small_left.width() / cells_across,
@@ -179,10 +186,10 @@ std::vector<RowSample> measure_cells(const Pyramid& pair, int cell_v) {
                {coarse.du * pair.factor + reach, coarse.dv * pair.factor + reach}, strip);
     if (fine.correlation < min_correlation) continue;
     if (const auto dv = refined_offset(pair, full, fine)) {
-      samples.push_back({1.0 * full.u, 1.0 * full.v, 1.0 * fine.du, *dv});
+      row.samples[row.count++] = {1.0 * full.u, 1.0 * full.v, 1.0 * fine.du, *dv};
     }
   }
-  return samples;
+  return row;
 }
 
 /// Power of two that leaves between 120 and 240 columns: the search over all disparities fits into a strip.
@@ -193,26 +200,52 @@ int alignment_factor(int width) {
   return factor;
 }
 
+/// The image downsampled, in `pixels`.
+ImageView<const std::int16_t> downsampled(ImageView<const std::int16_t> image, int factor,
+                                          ScratchVector<std::int16_t>& pixels) {
+  const int width = image.width() / factor, height = image.height() / factor;
+  pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  const ImageView<std::int16_t> small(pixels.data(), width, height, width);
+  downsample(image, factor, small);
+  return small;
+}
+
+ScratchVector<RowSample> match_cells(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
+                                     int threads, ImageView<const std::uint8_t> mask) {
+  require_one_size({left.width(), left.height()}, {right.width(), right.height()});
+  require_mask_size({mask.width(), mask.height()}, {left.width(), left.height()});
+  const PictureMask picture(left, mask);
+  const int factor = alignment_factor(left.width());
+  auto left_pixels = scratch_vector<std::int16_t>(), right_pixels = scratch_vector<std::int16_t>();
+  const Pyramid pair{left,
+                     right,
+                     factor,
+                     downsampled(left, factor, left_pixels),
+                     downsampled(right, factor, right_pixels),
+                     {picture.view(), factor}};
+  std::array<CellRow, cells_down> rows;
+  parallel_for(cells_down, threads,
+               [&](int cell_v, int) { rows[static_cast<std::size_t>(cell_v)] = measure_cells(pair, cell_v); });
+  auto samples = scratch_vector<RowSample>();
+  samples.reserve(std::size_t{cells_across} * cells_down);
+  for (const CellRow& row : rows) {
+    samples.insert(samples.end(), row.samples.begin(), row.samples.begin() + static_cast<std::ptrdiff_t>(row.count));
+  }
+  return samples;
+}
+
 }  // namespace
 
 std::vector<RowSample> sample_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                             int threads, ImageView<const std::uint8_t> mask) {
-  require_one_size({left.width(), left.height()}, {right.width(), right.height()});
-  require_mask_size({mask.width(), mask.height()}, {left.width(), left.height()});
-  const int factor = alignment_factor(left.width());
-  const Pyramid pair{left, right, factor, downsample(left, factor), downsample(right, factor), {mask, factor}};
-  std::vector<std::vector<RowSample>> by_row(cells_down);
-  parallel_for(cells_down, threads,
-               [&](int cell_v, int) { by_row[static_cast<std::size_t>(cell_v)] = measure_cells(pair, cell_v); });
-  std::vector<RowSample> samples;
-  for (const auto& row : by_row) samples.insert(samples.end(), row.begin(), row.end());
-  return samples;
+  const ScratchVector<RowSample> samples = match_cells(left, right, threads, mask);
+  return {samples.begin(), samples.end()};
 }
 
 RowAlignment measure_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, int threads,
                                    ImageView<const std::uint8_t> mask) {
-  const std::vector<RowSample> samples = sample_row_alignment(left, right, threads, mask);
-  std::vector<double> offsets;
+  const ScratchVector<RowSample> samples = match_cells(left, right, threads, mask);
+  auto offsets = scratch_vector<double>();
   offsets.reserve(samples.size());
   for (const RowSample& sample : samples) offsets.push_back(sample.dv);
   RowAlignment alignment;

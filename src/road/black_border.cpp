@@ -96,7 +96,6 @@ PictureMask::PictureMask(ImageView<const std::int16_t> grey, ImageView<const std
                    [](std::uint8_t masked, std::uint8_t here) { return masked != 0 ? std::uint8_t{255} : here; });
   }
   view_ = outside;
-  has_border_ = true;
 }
 
 }  // namespace roadstereo

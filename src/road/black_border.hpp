@@ -17,13 +17,11 @@ class PictureMask {
   PictureMask(const PictureMask&) = delete;
   PictureMask& operator=(const PictureMask&) = delete;
 
-  bool has_border() const { return has_border_; }
   ImageView<const std::uint8_t> view() const { return view_; }
 
  private:
   ScratchVector<std::uint8_t> outside_;
   ImageView<const std::uint8_t> view_;
-  bool has_border_ = false;
 };
 
 }  // namespace roadstereo

@@ -10,6 +10,7 @@
 #include "core/noise_correlation.hpp"
 #include "core/require_range.hpp"
 #include "core/require_size.hpp"
+#include "road/black_border.hpp"
 #include "road/coarse_match.hpp"
 #include "road/downsampled_plane.hpp"
 #include "road/masked_blocks.hpp"
@@ -295,9 +296,10 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   options.validate();
   const int factor = coarse_factor(left.width(), left.height());
   const double max_disparity = options.max_disparity_share * left.width();
-  const CoarseMatches coarse = match_coarsely(left, right, factor, max_disparity, threads, mask);
+  const PictureMask picture(left, mask);
+  const CoarseMatches coarse = match_coarsely(left, right, factor, max_disparity, threads, picture.view());
   const ScratchVector<DisparityPoint>& matches = coarse.points;
-  if (look_swapped(left, right, factor, max_disparity, matches.size(), threads, mask)) {
+  if (look_swapped(left, right, factor, max_disparity, matches.size(), threads, picture.view())) {
     fail("left and right look swapped: the matches lie at negative disparities");
   }
   RoadModelEstimate estimate;
@@ -324,7 +326,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
     estimate.reason = few_match ? too_few(estimate.matches) : "no plane has more evidence for it than against it";
     return estimate;
   }
-  FinePairs pairs(left, right, mask, factor);
+  FinePairs pairs(left, right, picture.view(), factor);
   RoadModelEstimate found = assess_planes(pairs, planes.roads, evidence, limit, options, threads, estimate);
   if (few_match && !found.has_road()) found.reason = too_few(estimate.matches);
   const bool expected = (rig || last) && prior(found.model) >= 0.5;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/order_statistics.hpp"
+#include "core/scratch.hpp"
 #include "road/plane_fit.hpp"
 #include "road/robust_weights.hpp"
 
@@ -36,11 +37,13 @@ struct Fit {
   RowOffset line() const { return {constant - per_column * u - per_row * v, per_column, per_row}; }
 };
 
-void refit(const std::vector<RowSample>& samples, bool with_slopes, Fit& fit) {
-  std::vector<double> residuals;
+void refit(std::span<const RowSample> samples, bool with_slopes, Fit& fit) {
+  auto residuals = scratch_vector<double>();
   residuals.reserve(samples.size());
   for (const RowSample& sample : samples) residuals.push_back(sample.dv - fit.at(sample));
-  fit.sigma = std::max(min_scale_px, gaussian_mad * upper_median_magnitude(std::vector(residuals)));
+  auto magnitudes = scratch_vector<double>();
+  magnitudes.assign(residuals.begin(), residuals.end());
+  fit.sigma = std::max(min_scale_px, gaussian_mad * upper_median_magnitude(magnitudes));
   double n = 0, u = 0, v = 0, dv = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const double weight = tukey_weight(residuals[k] / (tukey * fit.sigma));
@@ -67,7 +70,7 @@ void refit(const std::vector<RowSample>& samples, bool with_slopes, Fit& fit) {
   if (with_slopes) solve_slopes(fit.moments, true, fit.per_row, fit.per_column);
 }
 
-Fit fit_robustly(const std::vector<RowSample>& samples, double start, bool with_slopes) {
+Fit fit_robustly(std::span<const RowSample> samples, double start, bool with_slopes) {
   constexpr int iterations = 8;
   Fit fit;
   fit.constant = start;
@@ -77,8 +80,8 @@ Fit fit_robustly(const std::vector<RowSample>& samples, double start, bool with_
 
 }  // namespace
 
-RowOffset fit_row_offset(const std::vector<RowSample>& samples) {
-  std::vector<double> offsets;
+RowOffset fit_row_offset(std::span<const RowSample> samples) {
+  auto offsets = scratch_vector<double>();
   offsets.reserve(samples.size());
   for (const RowSample& sample : samples) offsets.push_back(sample.dv);
   const double median = upper_median(offsets);

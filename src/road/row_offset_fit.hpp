@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vector>
+#include <span>
 
 #include "roadstereo/alignment.hpp"
 
@@ -8,6 +8,6 @@ namespace roadstereo {
 
 /// Line of the vertical offsets, by iteratively reweighted least squares (IRLS) with Tukey weights. Slopes that are not
 /// significant are left out, and so is an offset that is not.
-RowOffset fit_row_offset(const std::vector<RowSample>& samples);
+RowOffset fit_row_offset(std::span<const RowSample> samples);
 
 }  // namespace roadstereo

@@ -374,7 +374,7 @@ TEST_F(FlightCommand, WhiteLevelRisesWithPictures) {
         wide.bytes[2 * k] = static_cast<std::uint8_t>(sample & 255U);
         wide.bytes[2 * k + 1] = static_cast<std::uint8_t>(sample >> 8U);
       }
-      write(file, io::encode_lossless_png(wide.view(), 1));
+      write(file, io::encode_png(wide.view()));
     }
   }
   write_list(4);

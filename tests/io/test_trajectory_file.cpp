@@ -33,6 +33,12 @@ TEST(ReadTrajectory, ReadsPosesAndSkipsUnknownOnes) {
   EXPECT_EQ(trajectory.frames[1].camera_to_world[11], 0.01);
 }
 
+TEST(ReadTrajectory, EmptyLinesAtTheEndAreNoPoses) {
+  const std::string pose = "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  EXPECT_EQ(read_trajectory(trajectory_file(pose + "\n \n\n")).frames.size(), 1U);
+  EXPECT_THROW(read_trajectory(trajectory_file(pose + "\n" + pose)), Error) << "a line is the number of a frame";
+}
+
 TEST(ReadTrajectory, ReadsEveryFiniteNumber) {
   const Trajectory trajectory = read_trajectory(trajectory_file("+1 0 -0 4.9e-324 0 1e+00 0 1e300 0 0 1. -.5\n"));
   ASSERT_EQ(trajectory.frames.size(), 1U);

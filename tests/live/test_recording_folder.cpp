@@ -105,6 +105,10 @@ TEST_F(RecordingFolderFiles, AreNotOverwritten) {
     folder.write({deep_frame(), deep_frame(), 1});
   }
   EXPECT_THROW(RecordingFolder(folder_ / "rec", {}), Error);
+  std::filesystem::create_directories(folder_ / "gone");
+  std::filesystem::create_symlink("nowhere/right", folder_ / "gone/right");
+  EXPECT_THROW(RecordingFolder(folder_ / "gone", "focal_px: 1\n"), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "gone/left")) << "what fails can be tried again";
   std::filesystem::create_directories(folder_ / "mine");
   write("mine/calibration.yaml", "focal_px: 2\n");
   EXPECT_THROW(RecordingFolder(folder_ / "mine", "focal_px: 1\n"), Error);

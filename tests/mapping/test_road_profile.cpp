@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "mapping/forward_path.hpp"
 #include "roadstereo/road_profile.hpp"
 
 namespace roadstereo {
@@ -74,6 +75,18 @@ TEST(ForwardPaths, BeginAnewAfterTurn) {
   EXPECT_EQ(parts[1].size(), 90U);  // but for the turning point, which the first part has
   EXPECT_NEAR(parts[1].front()[0], 11.9, 1e-9);
   EXPECT_NEAR(parts[1].back()[0], 3, 1e-9);
+}
+
+/// Along a square that a camera turning on the spot describes, the chord of two metres is none.
+TEST(ForwardPath, HasDirectionWhereItReturns) {
+  const std::vector<std::array<double, 2>> square{{0, 0}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}, {0, 0}};
+  const PathStation middle = ForwardPath(square).at(1.2);
+  EXPECT_NEAR(middle.at_m[0], 0.3, 1e-12);
+  EXPECT_NEAR(middle.at_m[1], 0.5, 1e-12);
+  EXPECT_NEAR(middle.ahead[0], -1, 1e-12);
+  EXPECT_NEAR(middle.ahead[1], 0, 1e-12);
+  const std::vector<std::array<double, 2>> corner{{0, 0}, {3, 0}, {3, 3}};
+  EXPECT_NEAR(ForwardPath(corner).at(3).ahead[0], std::sqrt(0.5), 1e-12);
 }
 
 TEST(ForwardPaths, OfNothingAndOfStandstill) {

@@ -64,6 +64,21 @@ INSTANTIATE_TEST_SUITE_P(Scenes, RoadModelScene,
                          testing::Values("flat", "uav", "nadir", "demo", "rolled", "noise", "blur", "gain"),
                          [](const auto& test) { return std::string(test.param); });
 
+/// Bars at the sides of both pictures match where they stand, at a disparity of 0.
+TEST(RoadModel, BlackBarsTakeNoPart) {
+  Pair pair = render_scene("uav");
+  const int bar = pair.left.width() / 8;
+  for (GreyImage* const view : {&pair.left, &pair.right}) {
+    for (int v = 0; v < view->height(); ++v) {
+      std::fill_n(view->row(v), bar, std::int16_t{0});
+      std::fill_n(view->row(v) + view->width() - bar, bar, std::int16_t{0});
+    }
+  }
+  const RoadModelEstimate road = estimate_road_model(pair.left, pair.right, pair.truth.calibration, RoadModelOptions{});
+  ASSERT_TRUE(road.has_road()) << road.reason;
+  EXPECT_LT(worst_difference(road.model, pair.truth), 0.5);
+}
+
 TEST(DisparityPlane, CarriesOverToNextFrame) {
   const Pair first = render_scene("uav");
   const RoadModelEstimate start =

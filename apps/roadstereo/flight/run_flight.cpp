@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "auto_mask.hpp"
+#include "core/parallel.hpp"
 #include "first_exception.hpp"
 #include "flight/bounded_queue.hpp"
 #include "flight/finish_frame.hpp"
@@ -79,7 +80,7 @@ void warm_up(Pipeline& pipeline, const io::SourcePair& pair) {
 
 int finisher_count(const PipelineOptions& options) {
   constexpr int max_finishers = 4;
-  return std::clamp(used_threads(options) / 2, 1, max_finishers);
+  return std::clamp(resolve_threads(options.threads) / 2, 1, max_finishers);
 }
 
 /// A trajectory needs the frames of an earlier run again, and so does a static mask until it is known.

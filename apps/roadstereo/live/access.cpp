@@ -2,11 +2,10 @@
 
 #include <sys/random.h>
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdint>
 
+#include "io/plain_text.hpp"
 #include "live/serve_address.hpp"
 #include "roadstereo/error.hpp"
 
@@ -44,9 +43,7 @@ bool names_this_machine(std::string_view host_header) {
   if (port.size() > max_digits || port.find_first_not_of("0123456789") != std::string_view::npos) return false;
   std::string host(host_header.substr(0, has_port ? colon : host_header.size()));
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-  std::transform(host.begin(), host.end(), host.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return ServeAddress{host, 0}.loopback();
+  return ServeAddress{io::lower_case(host), 0}.loopback();
 }
 
 }  // namespace roadstereo::cli

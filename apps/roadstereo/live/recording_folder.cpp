@@ -10,9 +10,9 @@
 #include <system_error>
 #include <utility>
 
-#include "io/lossless_png.hpp"
 #include "live/atomic_file.hpp"
 #include "roadstereo/error.hpp"
+#include "roadstereo/io/image_file.hpp"
 
 namespace roadstereo::cli {
 namespace fs = std::filesystem;
@@ -51,6 +51,15 @@ void require_no_recording(const fs::path& folder, const std::string& calibration
 
 RecordingFolder::RecordingFolder(fs::path folder, const std::string& calibration) : folder_(std::move(folder)) {
   require_no_recording(folder_, calibration);
+  try {
+    create(calibration);
+  } catch (...) {
+    remove_empty();
+    throw;
+  }
+}
+
+void RecordingFolder::create(const std::string& calibration) {
   make_folder(folder_ / "left");
   make_folder(folder_ / "right");
   const fs::path file = folder_ / "calibration.yaml";
@@ -63,9 +72,14 @@ RecordingFolder::RecordingFolder(fs::path folder, const std::string& calibration
 
 RecordingFolder::~RecordingFolder() {
   ::close(times_);
-  if (pairs_ > 0) return;
-  std::error_code ignored;  // nothing was recorded: the folder can be reused
-  for (const char* name : {"left", "right", "times.txt"}) fs::remove(folder_ / name, ignored);
+  if (pairs_ == 0) remove_empty();
+}
+
+/// Nothing was recorded: the folder can be reused.
+void RecordingFolder::remove_empty() const {
+  std::error_code ignored;
+  if (times_ >= 0) fs::remove(folder_ / "times.txt", ignored);
+  for (const char* name : {"left", "right"}) fs::remove(folder_ / name, ignored);
   if (wrote_calibration_) fs::remove(folder_ / "calibration.yaml", ignored);
 }
 
@@ -85,8 +99,8 @@ void RecordingFolder::write(const RecordedPair& pair) {
   const fs::path left = folder_ / "left" / name;
   const fs::path right = folder_ / "right" / name;
   try {
-    write_file_atomically(left, io::encode_lossless_png(pair.left.view(), png_level));
-    write_file_atomically(right, io::encode_lossless_png(pair.right.view(), png_level));
+    write_file_atomically(left, io::encode_png(pair.left.view(), png_level));
+    write_file_atomically(right, io::encode_png(pair.right.view(), png_level));
     write_time(pair.time_s);
   } catch (...) {
     std::error_code ignored;

@@ -24,6 +24,8 @@ class RecordingFolder {
   void write(const RecordedPair& pair);
 
  private:
+  void create(const std::string& calibration);
+  void remove_empty() const;
   void write_time(double time_s);
   void save_now_and_then();
 

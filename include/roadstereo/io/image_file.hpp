@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,8 @@ std::vector<std::uint8_t> encode_float_tiff(ImageView<const float> map);
 /// to 0 is written as 1. Throws Error naming the first value outside 0 … 255.99 px.
 std::vector<std::uint8_t> encode_kitti_png(ImageView<const float> disparity);
 
-/// Encodes an 8-bit frame (grey or colour) as PNG. Throws Error for 16-bit samples.
-std::vector<std::uint8_t> encode_png(const FrameView& frame);
+/// Encodes a frame (grey or colour, 8 or 16 bit) as PNG, samples unchanged. `compression`: 0 (none) … 9 (smallest).
+std::vector<std::uint8_t> encode_png(const FrameView& frame, std::optional<int> compression = std::nullopt);
 
 /// Encodes an 8-bit frame as JPEG, `quality` 1 … 100, and decodes it. Throws Error for another quality or depth.
 Frame with_jpeg_loss(const Frame& frame, int quality);

@@ -10,6 +10,7 @@
 #include "io/calibration_formats.hpp"
 #include "io/fixed_text.hpp"
 #include "io/geo/track_formats.hpp"
+#include "io/plain_text.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
@@ -28,13 +29,7 @@ constexpr std::array course_names = {"course", "bearing"};
 constexpr std::array speed_names = {"speed", "speed_m_s", "speed_mps"};  // metres per second
 
 std::string_view bare(std::string_view cell) {
-  constexpr std::string_view around = " \t\r";
-  const auto trim = [](std::string_view text, std::string_view letters) -> std::string_view {
-    const std::size_t first = text.find_first_not_of(letters);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(letters) - first + 1);
-  };
-  return trim(trim(cell, around), "\"");
+  return trimmed(trimmed(cell), "\"");
 }
 
 /// Splits a line; separators between quotes are part of a cell.

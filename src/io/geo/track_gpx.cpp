@@ -4,6 +4,7 @@
 
 #include "io/calibration_formats.hpp"
 #include "io/geo/track_formats.hpp"
+#include "io/plain_text.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
@@ -20,13 +21,6 @@ bool is_called(const pugi::xml_node& node, std::string_view name) {
 
 pugi::xml_node child_called(const pugi::xml_node& node, std::string_view name) {
   return node.find_child([name](const pugi::xml_node& child) { return is_called(child, name); });
-}
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view white_space = " \t\r\n";
-  const std::size_t first = text.find_first_not_of(white_space);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(white_space) - first + 1);
 }
 
 std::string_view text_of(const pugi::xml_node& node) {

@@ -16,11 +16,11 @@ namespace roadstereo::io {
 /// Returns the time stamp of the message header, nanoseconds; 0: none. Throws Error.
 std::int64_t stamp_ns(const std::string& source, const std::vector<std::uint8_t>& message, MessageFormat format);
 
-/// Decodes a sensor_msgs/Image: mono, rgb, bgr, rgba, bgra with 8 or 16 bits, bayer_* with 8 or 16 bits (converted to
-/// BGR), 8UC1, 8UC3, 16UC1. Throws Error; the message starts with `source`.
+/// Decodes a sensor_msgs/Image: mono, rgb, bgr, rgba, bgra with 8 or 16 bits, bayer_* with 8 or 16 bits and yuv422
+/// (uyvy, yuyv; both converted to BGR), 8UC1, 8UC3, 16UC1. Throws Error; the message starts with `source`.
 Frame read_image(const std::string& source, const std::vector<std::uint8_t>& message, MessageFormat format);
 
-/// Decodes a sensor_msgs/CompressedImage: JPEG or PNG. Throws Error; the message starts with `source`.
+/// Decodes a sensor_msgs/CompressedImage: JPEG, PNG, TIFF or PNM. Throws Error; the message starts with `source`.
 Frame read_compressed_image(const std::string& source, const std::vector<std::uint8_t>& message, MessageFormat format);
 
 /// Parses a sensor_msgs/CameraInfo. Throws Error, also for binning or a region of interest; it starts with `source`.

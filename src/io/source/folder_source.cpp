@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <unordered_set>
 
+#include "io/plain_text.hpp"
 #include "io/source/frame_times.hpp"
 #include "io/source/pairing.hpp"
 #include "io/source/sources.hpp"
@@ -36,15 +37,9 @@ struct SideNames {
 constexpr std::array side_names = {SideNames{"left", "right", false}, SideNames{"L", "R", false},
                                    SideNames{"left", "right", true}, SideNames{"_L", "_R", true}};
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return text;
-}
-
 bool is_image(const fs::path& file) {
   constexpr std::array extensions = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".pgm", ".ppm"};
-  const std::string extension = lower(file.extension().string());
+  const std::string extension = lower_case(file.extension().string());
   return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 
@@ -65,7 +60,7 @@ std::vector<ViewFile> images_in(const fs::path& folder) {
 std::optional<std::string> without_side(const std::string& stem, const std::string& side, bool at_end) {
   if (stem.size() < side.size()) return std::nullopt;
   const std::size_t at = at_end ? stem.size() - side.size() : 0;
-  if (lower(stem.substr(at, side.size())) != lower(side)) return std::nullopt;
+  if (lower_case(stem.substr(at, side.size())) != lower_case(side)) return std::nullopt;
   return at_end ? stem.substr(0, at) : stem.substr(side.size());
 }
 
@@ -158,7 +153,7 @@ std::unique_ptr<FrameSource> folder_pair(const fs::path& folder, const fs::path&
   for (const auto& [views, in] : {std::pair(&left, &left_folder), std::pair(&right, &right_folder)}) {
     if (views->empty()) fail(in->string(), ": there is no image (PNG, JPEG, TIFF, PGM or PPM) in this folder");
   }
-  const bool by_time = left[0].time_s && right[0].time_s;
+  const bool by_time = named_by_time(left) && named_by_time(right);
   if (!by_time && !share_a_key(left, right)) {
     key_by_number(left);
     key_by_number(right);

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "io/geo/utc_time.hpp"
+#include "io/plain_text.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
@@ -39,12 +40,6 @@ std::optional<double> date_time(const std::string& text) {
   return static_cast<double>(::timegm(&date)) + *part;
 }
 
-std::string trimmed(const std::string& line) {
-  const auto first = line.find_first_not_of(" \t\r");
-  if (first == std::string::npos) return {};
-  return line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
-}
-
 }  // namespace
 
 std::optional<double> time_of_name(const std::string& stem) {
@@ -59,6 +54,10 @@ std::optional<double> time_of_name(const std::string& stem) {
   return whole_number(stem.substr(0, digits_of_seconds) + "." + stem.substr(digits_of_seconds));
 }
 
+void require_seconds(const std::string& where, const std::string& text, double time_s) {
+  if (time_s > latest_unix_s) fail(where, ": ", text, " is after the year 2100; times are seconds, not nanoseconds");
+}
+
 std::vector<double> read_times(const std::filesystem::path& file, std::size_t count) {
   std::ifstream stream(file);
   if (!stream) fail(file.string(), ": cannot be read");
@@ -67,7 +66,7 @@ std::vector<double> read_times(const std::filesystem::path& file, std::size_t co
   bool text_ends_line = true;
   for (int number = 1; std::getline(stream, line); ++number) {
     text_ends_line = !stream.eof();
-    const std::string text = trimmed(line);
+    const std::string text(trimmed(line));
     if (text.empty() || text[0] == '#') continue;
     const auto seconds = whole_number(text);
     const auto time = seconds ? seconds : date_time(text);
@@ -75,9 +74,7 @@ std::vector<double> read_times(const std::filesystem::path& file, std::size_t co
       fail(file.string(), ", line ", number, ": \"", text,
            "\" is not a time; it must be seconds or YYYY-MM-DD hh:mm:ss.fff");
     }
-    if (*time > latest_unix_s) {
-      fail(file.string(), ", line ", number, ": ", text, " is after the year 2100; times are seconds, not nanoseconds");
-    }
+    require_seconds(file.string() + ", line " + std::to_string(number), text, *time);
     times.push_back(*time);
   }
   // After a power cut the last line may be torn: its time lies before the one above.

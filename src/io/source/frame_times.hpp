@@ -11,9 +11,12 @@ namespace roadstereo::io {
 /// seconds with a decimal point. Returns nullopt for other names, e.g. frame numbers.
 std::optional<double> time_of_name(const std::string& stem);
 
+/// Throws Error naming `where` if a time, given as `text`, is no plausible number of seconds since 1970.
+void require_seconds(const std::string& where, const std::string& text, double time_s);
+
 /// Reads one time per line: seconds, or date and time of day (UTC, KITTI's timestamps.txt). Throws Error naming file
-/// and line if one is neither, or if their number is not `count`; one may be missing at the end, that of a recording
-/// which was killed while it wrote the last pair.
+/// and line if one is neither, or if there are more than `count`, or fewer than half of it: a recording that was killed
+/// has fewer times than pairs.
 std::vector<double> read_times(const std::filesystem::path& file, std::size_t count);
 
 }  // namespace roadstereo::io

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "io/source/frame_times.hpp"
 #include "io/source/image_pairs.hpp"
 #include "io/source/sources.hpp"
 #include "roadstereo/error.hpp"
@@ -50,8 +51,10 @@ ImagePair pair_of(const std::vector<std::string>& words, const std::string& wher
   if (words.size() < 3) return pair;
   const char* end = words[2].data() + words[2].size();
   const auto [read_to, error] = std::from_chars(words[2].data(), end, pair.time_s);
-  if (error != std::errc{} || read_to != end || !std::isfinite(pair.time_s))
+  if (error != std::errc{} || read_to != end || !std::isfinite(pair.time_s)) {
     fail(where, ": \"", words[2], "\" is not a time in seconds");
+  }
+  require_seconds(where, words[2], pair.time_s);
   return pair;
 }
 

@@ -127,19 +127,12 @@ std::optional<std::uint64_t> McapFile::summary_offset() {
 
 std::optional<McapOpcode> McapFile::next_head(std::uint64_t& length) {
   std::uint8_t head[head_bytes] = {};
-  cut_off_ = false;
-  if (at_ + head_bytes > size_) {
-    cut_off_ = at_ != size_ && at_ + magic_bytes != size_;
-    return std::nullopt;
-  }
+  if (at_ + head_bytes > size_) return std::nullopt;
   file_.clear();
   file_.seekg(static_cast<std::streamoff>(at_));
   if (!file_.read(reinterpret_cast<char*>(head), sizeof head)) return std::nullopt;
   length = value_at<std::uint64_t>(head + 1);
-  if (length > size_ - at_ - head_bytes) {
-    cut_off_ = true;
-    return std::nullopt;
-  }
+  if (length > size_ - at_ - head_bytes) return std::nullopt;
   at_ += head_bytes;
   return McapOpcode{head[0]};
 }

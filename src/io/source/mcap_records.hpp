@@ -97,8 +97,6 @@ class McapFile {
     if (!opcode) return std::nullopt;
     return McapRecord{*opcode, wanted(*opcode) ? next_content(length) : skip_content(length)};
   }
-  /// Whether the last record was cut off.
-  bool cut_off() const { return cut_off_; }
 
  private:
   std::optional<McapOpcode> next_head(std::uint64_t& length);
@@ -110,7 +108,6 @@ class McapFile {
   std::uint64_t size_ = 0;
   std::uint64_t at_ = first_offset();
   std::vector<std::uint8_t> buffer_;
-  bool cut_off_ = false;
 };
 
 }  // namespace roadstereo::io

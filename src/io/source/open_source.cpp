@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 
 #include "core/require_range.hpp"
+#include "io/plain_text.hpp"
 #include "io/source/message_log.hpp"
 #include "io/source/sources.hpp"
 #include "roadstereo/error.hpp"
@@ -14,13 +14,6 @@ namespace fs = std::filesystem;
 namespace {
 
 enum class Kind { folder, list, video, camera, gstreamer, bag };
-
-std::string lower_extension(const std::string& name) {
-  std::string extension = fs::path(name).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return extension;
-}
 
 template <std::size_t N>
 bool is_one_of(const std::string& word, const std::array<const char*, N>& words) {
@@ -38,7 +31,7 @@ std::optional<Kind> known_kind(const std::string& name) {
   std::error_code ignored;
   if (fs::is_directory(name, ignored)) return is_message_log(name) ? Kind::bag : Kind::folder;
   if (!fs::exists(name, ignored)) return std::nullopt;
-  const std::string extension = lower_extension(name);
+  const std::string extension = lower_case(fs::path(name).extension().string());
   if (is_one_of(extension, bag_extensions)) return Kind::bag;
   if (is_one_of(extension, list_extensions)) return Kind::list;
   if (is_one_of(extension, video_extensions)) return Kind::video;
@@ -47,7 +40,7 @@ std::optional<Kind> known_kind(const std::string& name) {
 
 Kind kind_of(const std::string& name) {
   if (const auto kind = known_kind(name)) return *kind;
-  const std::string extension = lower_extension(name);
+  const std::string extension = lower_case(fs::path(name).extension().string());
   std::error_code ignored;
   if (!fs::exists(name, ignored)) {
     fail(name, ": no such file, folder, camera (/dev/video0) or GStreamer pipeline (a ! b)");

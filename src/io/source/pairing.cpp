@@ -23,10 +23,6 @@ std::string number_at(const std::string& text, std::size_t& at) {
   return text.substr(significant, at - significant);
 }
 
-bool named_by_time(const std::vector<ViewFile>& views) {
-  return std::all_of(views.begin(), views.end(), [](const ViewFile& view) { return view.time_s.has_value(); });
-}
-
 ImagePair whole_pair(const ViewFile& left, const ViewFile& right) {
   return {left.stem, left.path, right.path, left.time_s.value_or(std::numeric_limits<double>::quiet_NaN()), {}};
 }
@@ -114,6 +110,10 @@ bool natural_less(const std::string& one, const std::string& other) {
     }
   }
   return one.size() - i < other.size() - j;
+}
+
+bool named_by_time(const std::vector<ViewFile>& views) {
+  return std::all_of(views.begin(), views.end(), [](const ViewFile& view) { return view.time_s.has_value(); });
 }
 
 std::vector<ImagePair> pair_views(std::vector<ViewFile> left, std::vector<ViewFile> right,

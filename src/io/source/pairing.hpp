@@ -19,6 +19,9 @@ struct ViewFile {
 /// Natural order of names: "frame2" before "frame10".
 bool natural_less(const std::string& one, const std::string& other);
 
+/// Whether all images are named by time.
+bool named_by_time(const std::vector<ViewFile>& views);
+
 /// Pairs images with equal keys, or nearest in time if both cameras name their images by time. Unpaired images and
 /// pairs farther apart than `max_time_difference_s` have `error` set.
 std::vector<ImagePair> pair_views(std::vector<ViewFile> left, std::vector<ViewFile> right,

@@ -95,6 +95,7 @@ class Rosbag2Folder final : public MessageLog {
 
   void open(const std::string& file) {
     unpacked_.reset();
+    if (!fs::is_regular_file(file)) fail(file, ": the file does not exist, or is not a regular file");
     if (packed_files_) {
       unpacked_ = std::make_unique<TemporaryFile>();
       decompress_zstd_file(file, unpacked_->path());

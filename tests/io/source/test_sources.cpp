@@ -205,6 +205,18 @@ TEST_F(FolderSource, NumberOfFrameIsOneThatChanges) {
   }
 }
 
+// One name that looks like a time, wherever the file system lists it, does not make the others times.
+TEST_F(FolderSource, OneNameLikeATimeChangesNothing) {
+  image("a/front_7.png", 7);
+  image("a/1700000000000000000.png", 1);
+  image("b/rear-7.png", 8);
+  image("b/1700000000000000001.png", 2);
+  const auto source = open_source({(folder_ / "a").string(), (folder_ / "b").string()});
+  const auto pair = source->next();
+  ASSERT_TRUE(pair);
+  expect_numbers(*pair, 7, 8);
+}
+
 TEST_F(FolderSource, TwoImagesOfOneFrameAreAnError) {
   image("left/1.png", 1);
   image("left/01.png", 1);
@@ -285,6 +297,9 @@ TEST_F(ListSource, ReadsSpreadsheetExports) {
   }
   text("never.csv", "my x/one.png,y/two.png,nan\n");
   EXPECT_NE(complaint("never.csv").find("\"nan\" is not a time"), std::string::npos) << complaint("never.csv");
+  text("nanoseconds.csv", "my x/one.png,y/two.png,1700000000000000000\n");
+  EXPECT_NE(complaint("nanoseconds.csv").find("line 1: 1700000000000000000 is after the year 2100"), std::string::npos)
+      << complaint("nanoseconds.csv");
 }
 
 TEST_F(OpenSource, ErrorNamesFileAndRemedy) {

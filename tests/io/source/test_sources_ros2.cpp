@@ -181,6 +181,12 @@ TEST_F(Ros2Bag, DamageIsASentence) {
   fs::copy(data / "rosbag2", folder_ / "bag", fs::copy_options::recursive);
   fs::remove(folder_ / "bag" / "rosbag2_0.db3");
   EXPECT_NE(message_of(folder_ / "bag").find("rosbag2_0.db3: the file does not exist"), std::string::npos);
+  // A bag that lists its own folder.
+  bytes = bytes_of(data / "rosbag2" / "metadata.yaml");
+  std::string metadata(bytes.begin(), bytes.end());
+  metadata.replace(metadata.find("rosbag2_0.db3"), std::strlen("rosbag2_0.db3"), ".");
+  write(folder_ / "bag" / "metadata.yaml", {metadata.begin(), metadata.end()});
+  EXPECT_NE(message_of(folder_ / "bag").find("is not a regular file"), std::string::npos);
 }
 
 /// Where the records of an MCAP file that are chunks begin and end.
