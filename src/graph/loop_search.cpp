@@ -135,10 +135,11 @@ std::vector<LoopLink> LoopSearch::State::find(const Trajectory& odometry, const 
   std::vector<LoopLink> loops;
   if (views.empty()) return loops;
   const LinkEstimator estimator(store.calibration(full), options);
+  const LoopPlaces places(views, odometry, best);
   ScratchMemory memory;
   const ScratchScope scratch(memory);
   for (std::size_t to = 0; to < views.size(); ++to) {
-    for (const LoopCandidates& visit : loop_candidates(views, to, odometry, best)) {
+    for (const LoopCandidates& visit : places.visits(to)) {
       const auto is_known = [&](std::size_t from) { return found.count({from, to}) > 0; };
       if (std::any_of(visit.begin(), visit.end(), is_known)) continue;
       for (const std::size_t from : visit) {

@@ -83,23 +83,20 @@ class Optimiser {
       fail("the trajectory has ", frames.size(), " frames, but ", input_.times_s.size(), " times and ",
            input_.road_up.size(), " normals of the road; fixes need one of each per frame");
     }
-    constexpr std::size_t most = 500;  // frames that the search of the time offset compares
-    const std::size_t every = (frames.size() + most - 1) / most;
     std::vector<TimedPosition> timed;
     std::vector<Eigen::Vector3d> ups;
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const auto piece = static_cast<std::size_t>(frames[i].piece);
       ups.resize(std::max(ups.size(), piece + 1), Eigen::Vector3d::Zero());
       if (input_.road_up[i]) ups[piece] += poses_[i].rotation * Eigen::Vector3d(input_.road_up[i]->data());
-      if (i % every == 0 && std::isfinite(input_.times_s[i]))
-        timed.push_back({piece, input_.times_s[i], poses_[i].position});
+      timed.push_back({piece, input_.times_s[i], poses_[i].position});
     }
     std::vector<std::optional<Eigen::Vector3d>> up(ups.size());
     for (std::size_t i = 0; i < ups.size(); ++i) {
       if (ups[i].norm() > 0) up[i] = ups[i].normalized();
     }
     curve_ = std::make_unique<FixCurve>(input_.fixes, options_.max_fix_gap_s);
-    const TrackAlignment alignment = align_to_track(timed, up, *curve_, options_);
+    const TrackAlignment alignment = align_to_track(frames_to_align(timed), up, *curve_, options_);
     result_.track_unused = alignment.unused;
     result_.track_contradicts = alignment.contradicts;
     if (!alignment.unused.empty()) return curve_.reset();

@@ -31,9 +31,10 @@ void SparseCovariance::fill() {
   inverse_.assign(static_cast<std::size_t>(lower_.nonZeros()), 0);
   const int* const rows = lower_.innerIndexPtr();
   const double* const values = lower_.valuePtr();
+  const Eigen::VectorXd pivots = factor_.vectorD();
   for (auto j = static_cast<int>(size) - 1; j >= 0; --j) {
     const int begin = lower_.outerIndexPtr()[j], end = lower_.outerIndexPtr()[j + 1];
-    double diagonal = 1 / factor_.vectorD()[j];
+    double diagonal = 1 / pivots[j];
     for (int i = end - 1; i >= begin; --i) {
       double sum = 0;
       for (int k = begin; k < end; ++k) sum -= values[k] * element(rows[i], rows[k]);

@@ -100,7 +100,8 @@ class Aligner {
  public:
   Aligner(const std::vector<TimedPosition>& frames, const std::vector<std::optional<Eigen::Vector3d>>& up,
           const FixCurve& curve, const PoseGraphOptions& options)
-      : frames_(frames), curve_(curve), options_(options), level_(up.size()) {
+      : frames_(up.size()), curve_(curve), options_(options), level_(up.size()) {
+    for (const TimedPosition& frame : frames) frames_[frame.piece].push_back(frame);
     for (std::size_t i = 0; i < up.size(); ++i) {
       if (up[i]) level_[i] = Eigen::Quaterniond::FromTwoVectors(*up[i], Eigen::Vector3d::UnitZ());
     }
@@ -184,8 +185,7 @@ class Aligner {
   std::vector<Match> matches_of(std::size_t piece, double offset_s, bool mirrored) const {
     std::vector<Match> matches;
     if (!level_[piece]) return matches;
-    for (const TimedPosition& frame : frames_) {
-      if (frame.piece != piece) continue;
+    for (const TimedPosition& frame : frames_[piece]) {
       const double time_s = frame.time_s + offset_s;
       const std::optional<std::size_t> segment = curve_.segment(time_s);
       if (!segment) continue;
@@ -218,7 +218,7 @@ class Aligner {
     return best_s;
   }
 
-  const std::vector<TimedPosition>& frames_;
+  std::vector<std::vector<TimedPosition>> frames_;  ///< of each piece
   const FixCurve& curve_;
   const PoseGraphOptions& options_;
   std::vector<std::optional<Eigen::Quaterniond>> level_;  ///< world of each piece to one whose z axis is the vertical

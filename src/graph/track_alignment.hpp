@@ -30,6 +30,10 @@ struct TrackAlignment {
 /// are left out.
 double recorded_s(std::span<const double> times_s, double max_gap_s);
 
+/// Frames that suffice to align a trajectory, of those with a time: about 500, evenly, but at least 20 of each piece
+/// that has so many.
+std::vector<TimedPosition> frames_to_align(const std::vector<TimedPosition>& frames);
+
 /// Fits the pieces of a trajectory to fixes: for every time offset the turn about the vertical and the shift of each
 /// piece (least squares, once more without what is off by more than three medians); the most likely offset.
 /// `up` is the vertical in the world of each piece, absent where unknown. Refuses fixes that do not fit, and those that

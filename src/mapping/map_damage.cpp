@@ -9,6 +9,7 @@
 
 #include "core/degrees.hpp"
 #include "core/order_statistics.hpp"
+#include "mapping/bounds_index.hpp"
 #include "mapping/footprints.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/roll.hpp"
@@ -135,15 +136,21 @@ bool overlap(const MapDamage& one, const MapDamage& other) {
 }
 
 /// Takes of two findings in overlapping windows the one that is not cut, or else the larger.
-void add_finding(MapDamage finding, std::vector<MapDamage>& findings) {
-  for (MapDamage& known : findings) {
+void add_finding(MapDamage finding, std::vector<MapDamage>& findings, BoundsIndex& index) {
+  const CellBounds bounds = bounds_of(finding.footprint);
+  for (const std::size_t i : index.near(bounds)) {
+    MapDamage& known = findings[i];
     if (!overlap(known, finding)) continue;
     const bool better = known.damage.cut_by_border != finding.damage.cut_by_border
                             ? known.damage.cut_by_border
                             : finding.footprint.size() > known.footprint.size();
-    if (better) known = std::move(finding);
+    if (better) {
+      known = std::move(finding);
+      index.add(i, bounds);
+    }
     return;
   }
+  index.add(findings.size(), bounds);
   findings.push_back(std::move(finding));
 }
 
@@ -199,6 +206,7 @@ std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& 
   const auto cells = [cell_m](double length_m) { return static_cast<int>(std::ceil(length_m / cell_m / 2)) * 2; };
   const int side = std::max({cells(min_side_m), min_side, std::min(usual_side, cells(max_side_m))});
   std::vector<MapDamage> findings;
+  BoundsIndex index;
   WindowView view;
   DamageMap found;
   DamageOptions of_window = options;
@@ -220,7 +228,7 @@ std::vector<MapDamage> find_map_damage(const RoadMap& map, const DamageOptions& 
       continue;
     }
     for (const Damage& damage : found.damages) {
-      if (damage.metrics) add_finding(map_damage(damage, found, box, cell_m), findings);
+      if (damage.metrics) add_finding(map_damage(damage, found, box, cell_m), findings, index);
     }
   }
   return findings;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <numbers>
 #include <set>
@@ -13,103 +12,11 @@
 #include "core/order_statistics.hpp"
 #include "damage/distress.hpp"
 #include "damage/smoothing_error.hpp"
-#include "mapping/footprints.hpp"
+#include "mapping/finding_groups.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
 namespace {
-
-/// Findings of one damage.
-struct Group {
-  DamageKind kind = DamageKind::depression;
-  MapCells footprint;  ///< of the confident ones, or of the first
-  CellBounds bounds;   ///< of the footprint
-  const MapDamage* in_map = nullptr;
-  std::vector<const DamageSighting*> sightings;
-};
-
-void add_cells(const MapCells& more, Group& group) {
-  MapCells all;
-  std::set_union(group.footprint.begin(), group.footprint.end(), more.begin(), more.end(), std::back_inserter(all),
-                 cell_less);
-  group.footprint = std::move(all);
-  group.bounds = bounds_of(group.footprint);
-}
-
-/// Returns the group with the largest overlap, or null.
-Group* group_of(const MapDamage& found, std::vector<Group>& groups) {
-  Group* best = nullptr;
-  double max_share = min_overlap_share;
-  const CellBounds bounds = bounds_of(found.footprint);
-  for (Group& group : groups) {
-    if (group.kind != found.damage.kind || !group.bounds.overlaps(bounds)) continue;
-    const double share = overlap_share(group.footprint, found.footprint);
-    if (share < max_share) continue;
-    max_share = share;
-    best = &group;
-  }
-  return best;
-}
-
-Group& join_group(const MapDamage& found, double min_confidence, std::vector<Group>& groups) {
-  Group* known = group_of(found, groups);
-  if (known == nullptr) {
-    Group fresh;
-    fresh.kind = found.damage.kind;
-    fresh.footprint = found.footprint;
-    fresh.bounds = bounds_of(found.footprint);
-    return groups.emplace_back(std::move(fresh));
-  }
-  if (found.damage.confidence >= min_confidence) add_cells(found.footprint, *known);
-  return *known;
-}
-
-void move_into(Group& from, Group& into) {
-  add_cells(from.footprint, into);
-  if (into.in_map == nullptr) into.in_map = from.in_map;
-  into.sightings.insert(into.sightings.end(), from.sightings.begin(), from.sightings.end());
-}
-
-/// Joins groups that have grown together: parts of one damage that later findings connect.
-void join_grown(std::vector<Group>& groups) {
-  constexpr double min_share = 0.5;
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    for (std::size_t k = i + 1; k < groups.size();) {
-      if (groups[i].kind == groups[k].kind && groups[i].bounds.overlaps(groups[k].bounds) &&
-          overlap_share(groups[i].footprint, groups[k].footprint) >= min_share) {
-        move_into(groups[k], groups[i]);
-        groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(k));
-        k = i + 1;
-      } else {
-        ++k;
-      }
-    }
-  }
-}
-
-/// The map first, since its noise is least, then whole sightings before cut ones; the most confident first.
-std::vector<Group> group_findings(std::span<const DamageSighting> sightings, std::span<const MapDamage> in_map,
-                                  double min_confidence) {
-  const auto rank = [](const MapDamage& found) {
-    return std::tuple(found.damage.cut_by_border, -found.damage.confidence);
-  };
-  std::vector<const MapDamage*> findings;
-  for (const MapDamage& found : in_map) findings.push_back(&found);
-  std::stable_sort(findings.begin(), findings.end(), [&](auto* a, auto* b) { return rank(*a) < rank(*b); });
-  std::vector<const DamageSighting*> ordered;
-  for (const DamageSighting& sighting : sightings) ordered.push_back(&sighting);
-  std::stable_sort(ordered.begin(), ordered.end(), [&](auto* a, auto* b) { return rank(a->found) < rank(b->found); });
-  std::vector<Group> groups;
-  for (const MapDamage* found : findings) {
-    Group& group = join_group(*found, min_confidence, groups);
-    if (group.in_map == nullptr) group.in_map = found;
-  }
-  for (const DamageSighting* sighting : ordered) {
-    join_group(sighting->found, min_confidence, groups).sightings.push_back(sighting);
-  }
-  join_grown(groups);
-  return groups;
-}
 
 /// A figure of one sighting. `common` is the part of its standard error that all sightings share.
 struct Figure {
@@ -206,7 +113,7 @@ int views_of(const MapCells& footprint, const RoadMap& map) {
 }
 
 /// Best finding of a group: of the map, else the sighting that is whole and has the smallest error.
-const MapDamage& best_of(const Group& group) {
+const MapDamage& best_of(const FindingGroup& group) {
   if (group.in_map != nullptr) return *group.in_map;
   const auto best = std::min_element(group.sightings.begin(), group.sightings.end(), [](auto* a, auto* b) {
     const Damage &one = a->found.damage, &other = b->found.damage;
@@ -217,7 +124,7 @@ const MapDamage& best_of(const Group& group) {
 }
 
 /// Whether the fused depth is resolved, or that of a finding by its noise alone (`DamageEvidence::depth_significance`).
-bool is_depth_resolved(const Group& group, const Measurement& fused) {
+bool is_depth_resolved(const FindingGroup& group, const Measurement& fused) {
   return fused.is_resolved() || (group.in_map != nullptr && group.in_map->damage.evidence.is_depth_resolved()) ||
          std::any_of(group.sightings.begin(), group.sightings.end(),
                      [](auto* one) { return one->found.damage.evidence.is_depth_resolved(); });
@@ -254,7 +161,7 @@ void require_metrics(const MapDamage& found) {
     fail("damage ", found.damage.id, " has no metric values; only measured damages are joined");
 }
 
-RoadDamageRecord record_of(const Group& group, const RoadMap& map, const DamageOptions& options) {
+RoadDamageRecord record_of(const FindingGroup& group, const RoadMap& map, const DamageOptions& options) {
   const double view_factor = map.view_factor();
   // What is hardly seen is hardly measured: such sightings count only where there are no others.
   const bool any_confident = std::any_of(group.sightings.begin(), group.sightings.end(), [&](auto* one) {
@@ -314,7 +221,7 @@ std::vector<RoadDamageRecord> join_damage(std::span<const DamageSighting> sighti
   for (const DamageSighting& sighting : sightings) require_metrics(sighting.found);
   for (const MapDamage& found : in_map) require_metrics(found);
   std::vector<RoadDamageRecord> records;
-  for (const Group& group : group_findings(sightings, in_map, options.min_confidence)) {
+  for (const FindingGroup& group : group_findings(sightings, in_map, options.min_confidence)) {
     RoadDamageRecord record = record_of(group, map, options);
     const bool is_damage = record.confidence >= options.min_confidence && is_depth_resolved(group, record.max_depth_m);
     if (is_damage) records.push_back(std::move(record));

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/order_statistics.hpp"
-#include "road/sampler.hpp"
 
 namespace roadstereo {
 
@@ -69,66 +68,75 @@ std::optional<IrlsPlaneFit> fit_plane_irls(std::span<const DisparityPoint> point
 }
 
 std::optional<DisparityPlane> plane_through(const DisparityPoint& a, const DisparityPoint& b, const DisparityPoint& c) {
-  const double bu = b.u - a.u, bv = b.v - a.v, bd = b.d - a.d;
-  const double cu = c.u - a.u, cv = c.v - a.v, cd = c.d - a.d;
-  const double determinant = bu * cv - bv * cu;
-  if (std::abs(determinant) < 1e-6) return std::nullopt;
-  DisparityPlane model;
-  model.a2 = (bd * cv - bv * cd) / determinant;
-  model.a1 = (bu * cd - bd * cu) / determinant;
-  model.a0 = a.d - model.a1 * a.v - model.a2 * a.u;
-  return model;
+  DisparityPlane plane;
+  if (!plane_through({a.u, a.v, a.d}, {b.u, b.v, b.d}, {c.u, c.v, c.d}, plane)) return std::nullopt;
+  return plane;
 }
 
 namespace {
 
-/// Scores planes by points in groups, and stops where the rest cannot make one the best.
-class PreemptiveScorer {
+/// Residuals of the points that planes are compared by.
+class ComparedPoints {
  public:
-  PreemptiveScorer(ScratchVector<DisparityPoint> points, double tolerance_px)
-      : points_(std::move(points)), tolerance_px_(tolerance_px) {}
-
-  /// Score of the plane; some number up to `least` when it cannot be higher.
-  double score(const DisparityPlane& plane, double least) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      if (i % group == 0 && sum + static_cast<double>(points_.size() - i) <= least) break;  // a point adds at most 1
-      const double x = (points_[i].d - plane.disparity(points_[i].u, points_[i].v)) / tolerance_px_;
-      sum += std::max(0.0, 1 - x * x);
+  explicit ComparedPoints(std::span<const DisparityPoint> points) {
+    const auto count = static_cast<int>(points.size());
+    for (int k = 0; count > 0 && k < compared_points; ++k) {
+      const DisparityPoint& point = points[static_cast<std::size_t>(compared_point(k, count))];
+      if (!std::isnan(point.d)) points_.push_back(point);
     }
-    return sum;
+    residuals_.resize(points_.size());
+  }
+  bool empty() const { return points_.empty(); }
+
+  void measure(const DisparityPlane& plane) {
+    std::transform(points_.begin(), points_.end(), residuals_.begin(),
+                   [&](const DisparityPoint& p) { return p.d - plane.disparity(p.u, p.v); });
+  }
+  /// Whether the quantile is less than `limit`.
+  bool has_quantile_below(double limit) const {
+    int near = 0;
+    for (const double r : residuals_) near += std::abs(r) < limit ? quantile_weight(r < 0) : 0;
+    return near >= wanted();
+  }
+  double quantile() {
+    const int quantile = wanted();
+    std::sort(residuals_.begin(), residuals_.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    int near = 0;
+    for (const double r : residuals_) {
+      near += quantile_weight(r < 0);
+      if (near >= quantile) return std::abs(r);
+    }
+    return std::abs(residuals_.back());
   }
 
  private:
-  static constexpr std::size_t group = 25;
+  int wanted() const {
+    const auto below = std::count_if(residuals_.begin(), residuals_.end(), [](double r) { return r < 0; });
+    return quantile_of(static_cast<int>(residuals_.size()), static_cast<int>(below));
+  }
 
-  ScratchVector<DisparityPoint> points_;
-  double tolerance_px_;
+  ScratchVector<DisparityPoint> points_ = scratch_vector<DisparityPoint>();
+  ScratchVector<double> residuals_ = scratch_vector<double>();
 };
 
 }  // namespace
 
-std::optional<DisparityPlane> ransac_plane(std::span<const DisparityPoint> points, double tolerance_px) {
-  constexpr int iterations = 300;
-  constexpr std::size_t samples = 400;
-  if (points.size() < 3) return std::nullopt;
-  Sampler sampler;
-  const auto draw = [&]() -> const DisparityPoint& { return points[sampler.below(points.size())]; };
-  auto drawn = scratch_vector<DisparityPoint>();
-  drawn.reserve(samples);
-  for (std::size_t i = 0; i < samples; ++i) drawn.push_back(draw());
-  const PreemptiveScorer scorer(std::move(drawn), tolerance_px);
-  std::optional<DisparityPlane> best;
-  double best_score = 0;
-  for (int i = 0; i < iterations; ++i) {
-    const DisparityPoint &a = draw(), &b = draw(), &c = draw();
+QuantilePlane least_quantile_plane(std::span<const DisparityPoint> points, const DisparityPlane& start) {
+  ComparedPoints compared(points);
+  if (compared.empty()) return {start, 0};
+  compared.measure(start);
+  QuantilePlane best{start, compared.quantile()};
+  const auto count = static_cast<int>(points.size());
+  for (int k = 0; k < tried_planes; ++k) {
+    const auto corner = [&](int of_plane) {
+      return points[static_cast<std::size_t>(corner_point(k, of_plane, count))];
+    };
+    const DisparityPoint a = corner(0), b = corner(1), c = corner(2);
+    if (std::isnan(a.d + b.d + c.d)) continue;
     const auto plane = plane_through(a, b, c);
     if (!plane) continue;
-    const double score = scorer.score(*plane, best_score);
-    if (score > best_score) {
-      best_score = score;
-      best = plane;
-    }
+    compared.measure(*plane);
+    if (compared.has_quantile_below(best.quantile_px)) best = {*plane, compared.quantile()};
   }
   return best;
 }

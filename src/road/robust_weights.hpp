@@ -30,13 +30,13 @@ ROADSTEREO_HD inline bool robust_fit_settled(double by_px, double by_a2, double 
          narrowed * narrowed * points < share2 * last_scale * last_scale;
 }
 
-/// Window that the robust fit of a map begins with: wide enough for a start that is a pixel off, too narrow for kerbs.
-inline constexpr double min_start_scale_px = 0.2;
+/// The largest scale that the robust fit of a map begins with: too narrow for most kerbs.
 inline constexpr double max_start_scale_px = 0.6;
 
-ROADSTEREO_HD inline double start_scale_of(double median_magnitude) {
-  const double scale = gaussian_mad * median_magnitude;
-  if (scale < min_start_scale_px) return min_start_scale_px;
+/// From the quantile of least_quantile.hpp. Of a road alone, with normal noise, half of the residuals are within it.
+ROADSTEREO_HD inline double start_scale_of(double quantile_px) {
+  const double scale = gaussian_mad * quantile_px;
+  if (scale < min_scale_px) return min_scale_px;
   return scale > max_start_scale_px ? max_start_scale_px : scale;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 #include "core/order_statistics.hpp"
@@ -45,7 +47,7 @@ PlaneSums sum_points(std::span<const DisparityPoint> points) {
   return sums;
 }
 
-/// Valid disparities on a regular grid.
+/// Disparities on a regular grid; NaN where they are not usable.
 ScratchVector<DisparityPoint> sample_map(ImageView<const float> disparity, Region region) {
   const MapSample sample = map_sample(disparity.width(), disparity.height());
   auto points = scratch_vector<DisparityPoint>();
@@ -54,9 +56,8 @@ ScratchVector<DisparityPoint> sample_map(ImageView<const float> disparity, Regio
     const int v = sample.at(row);
     for (int column = 0; column < sample.columns; ++column) {
       const int u = sample.at(column);
-      if (usable(disparity, region, u, v)) {
-        points.push_back({static_cast<double>(u), static_cast<double>(v), disparity(u, v)});
-      }
+      points.push_back({static_cast<double>(u), static_cast<double>(v),
+                        usable(disparity, region, u, v) ? disparity(u, v) : std::numeric_limits<double>::quiet_NaN()});
     }
   }
   return points;
@@ -136,32 +137,19 @@ FitMoments fit_moments(std::span<const DisparityPoint> points, std::span<const d
   return moments;
 }
 
-/// The start of the robust fit: the model known before matching, or the plane that most of the map agrees with.
-DisparityPlane robust_start(std::span<const DisparityPoint> points, const std::optional<DisparityPlane>& prior,
-                            const DisparityPlane& least_squares) {
-  if (prior) return *prior;
-  constexpr double tolerance_px = 1.0;
-  return ransac_plane(points, tolerance_px).value_or(least_squares);
-}
-
-double start_scale(std::span<const DisparityPoint> points, const DisparityPlane& start) {
-  auto residuals = scratch_vector<double>();
-  residuals.reserve(points.size());
-  for (const DisparityPoint& p : points) residuals.push_back(p.d - start.disparity(p.u, p.v));
-  return start_scale_of(upper_median_magnitude(residuals));
-}
-
-/// Plane, roll angle and iterations; without a fit the least-squares plane, and no weights.
-RollEstimate fit_robustly(std::span<const DisparityPoint> points, const std::optional<DisparityPlane>& prior,
-                          int max_iterations, ScratchVector<double>& weights) {
+/// Plane, roll angle and iterations; without a fit the least-squares plane, and no weights. The fit starts from the
+/// least quantile of the `sample`, of which `points` are not missing.
+RollEstimate fit_robustly(std::span<const DisparityPoint> sample, std::span<const DisparityPoint> points,
+                          const std::optional<DisparityPlane>& prior, int max_iterations,
+                          ScratchVector<double>& weights) {
   const PlaneSums sums = sum_points(points);
   require_enough(sums.weight());
   const std::optional<DisparityPlane> least_squares = sums.plane();
   if (!least_squares) fail_on_one_line();
   RollEstimate geometry;
   geometry.pixels = points.size();
-  const DisparityPlane start = robust_start(points, prior, *least_squares);
-  auto fit = fit_plane_irls(points, start, start_scale(points, start), true, max_iterations);
+  const QuantilePlane start = least_quantile_plane(sample, prior.value_or(*least_squares));
+  auto fit = fit_plane_irls(points, start.plane, start_scale_of(start.quantile_px), true, max_iterations);
   geometry.plane = fit ? fit->plane : *least_squares;
   geometry.iterations = fit ? fit->iterations : 0;
   geometry.roll_rad = roll_of_plane(geometry.plane);
@@ -184,10 +172,14 @@ RollEstimate estimate_roll(ImageView<const float> disparity, Region region, cons
                            double initial_roll_rad, const RollOptions& options, int threads) {
   options.validate();
   if (!region.empty()) require_same_size("the region", map_size(region), "the disparity map", map_size(disparity));
-  const ScratchVector<DisparityPoint> points = sample_map(disparity, region);
+  const ScratchVector<DisparityPoint> sample = sample_map(disparity, region);
+  auto points = scratch_vector<DisparityPoint>();
+  points.reserve(sample.size());
+  std::copy_if(sample.begin(), sample.end(), std::back_inserter(points),
+               [](const DisparityPoint& p) { return !std::isnan(p.d); });
   auto weights = scratch_vector<double>();
   RollEstimate geometry = options.solver == RollSolver::robust
-                              ? fit_robustly(points, prior, options.max_iterations, weights)
+                              ? fit_robustly(sample, points, prior, options.max_iterations, weights)
                               : solve_from_sums(sum_map(disparity, region, threads), initial_roll_rad, options);
   const FitMoments moments = fit_moments(points, weights, geometry.plane, disparity.width(), disparity.height());
   assess_roll(moments, disparity.width(), disparity.height(), options, geometry);

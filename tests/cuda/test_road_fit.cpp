@@ -134,9 +134,21 @@ TEST_F(CudaRoadFit, RecoversRollOfExactRoad) {
   EXPECT_TRUE(g.roll_observable);
 }
 
-TEST_F(CudaRoadFit, BadStartFallsBackToLeastSquares) {
+TEST_F(CudaRoadFit, BadStartIsReplaced) {
   expect_agreement(road_map(129, 47, 0.02, 0.4), {}, DisparityPlane{400, 0, 0}, RollSolver::robust);
-  EXPECT_EQ(fit_->statistics().fit.found, 0);
+  EXPECT_EQ(fit_->statistics().fit.found, 1);
+}
+
+/// A pavement on the right, 1.4 px above the road. The fit starts from a plane that leans against the kerb.
+TEST_F(CudaRoadFit, PavementIsNoRoad) {
+  for (const int road_columns : {150, 110, 70}) {
+    Image<float> map = road_map(160, 90, 0.02, 0.1);
+    for (int v = 0; v < 90; ++v) {
+      for (int u = road_columns; u < 160; ++u) map(u, v) += 1.4F;
+    }
+    const DisparityPlane leaning{30, 0.15 * std::cos(0.02), -0.15 * std::sin(0.02) + 1.4 / 160};
+    expect_agreement(map, {}, leaning, RollSolver::robust);
+  }
 }
 
 TEST_F(CudaRoadFit, RejectsLineLikeHost) {

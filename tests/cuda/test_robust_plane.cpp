@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "core/order_statistics.hpp"
 #include "road/cuda/robust_plane.hpp"
 #include "road/plane_fit.hpp"
 #include "roadstereo/error.hpp"
@@ -121,19 +120,6 @@ TEST_F(CudaRobustPlane, StopsAfterMaximumSteps) {
   const Fitted device = fit_on_device(points, {4.4, 0.109, -0.02}, {0.5, true, 3});
   EXPECT_EQ(device.plane.iterations, host->iterations);
   EXPECT_NEAR(device.plane.plane.a0, host->plane.a0, 1e-6);
-}
-
-TEST_F(CudaRobustPlane, StartsFromMedianOfResiduals) {
-  const Points points = noisy_road(400, 0.5);
-  for (const double by : {0.0, 0.3, 5.0}) {
-    const DisparityPlane start{road.a0 + by, road.a1, road.a2};
-    auto residuals = scratch_vector<double>();
-    for (const auto& p : points.present()) residuals.push_back(p.d - start.disparity(p.u, p.v));
-    const double scale = std::clamp(1.4826 * upper_median_magnitude(residuals), 0.2, 0.6);
-    const auto host = fit_plane_irls(points.present(), start, scale, true, 200);
-    ASSERT_TRUE(host);
-    expect_agreement(fit_on_device(points, start, {0, true, 200}), *host, points);
-  }
 }
 
 TEST_F(CudaRobustPlane, TooFewPointsGiveNoPlane) {

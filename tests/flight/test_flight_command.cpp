@@ -18,7 +18,6 @@
 #include <thread>
 #include <vector>
 
-#include "io/lossless_png.hpp"
 #include "roadstereo/io/image_file.hpp"
 #include "roadstereo/synth.hpp"
 #include "tests/cli/command_test.hpp"

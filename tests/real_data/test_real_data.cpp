@@ -204,7 +204,9 @@ TEST_P(PotholesRealData, RoadIsFlatAndPotholeLiesBelow) {
       }
     }
   }
-  const auto start = ransac_plane(road, 1.0);
+  PlaneSums sums;
+  for (const DisparityPoint& point : road) sums.add(point);
+  const auto start = sums.plane();
   ASSERT_TRUE(start);
   const auto plane = fit_plane_irls(road, *start, 1.0, true, 100);
   ASSERT_TRUE(plane);

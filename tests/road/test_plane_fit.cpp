@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/order_statistics.hpp"
 #include "road/plane_fit.hpp"
@@ -81,14 +82,39 @@ TEST(IrlsPlaneFit, CountsItsSteps) {
   for (const int most : {1, 2}) EXPECT_EQ(fit_plane_irls(points, start, 0.6, true, most)->iterations, most);
 }
 
-TEST(SearchPlane, FindsPlaneOfMajority) {
-  auto points = points_on(truth, 2000);
+/// Of five points two lie on the plane, two on one a pixel higher at one side, one anywhere above.
+TEST(LeastQuantile, IsPlaneOfTwoFifths) {
+  std::vector<DisparityPoint> points = points_on(truth, 1000);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (i % 5 < 2) points[i].d = 100 * test::lattice(static_cast<int>(i), 3, 5);
+    DisparityPoint& p = points[i];
+    if (i % 5 == 1) p.d += 40 * test::lattice(static_cast<int>(i), 2, 5);
+    if (i % 5 > 2) p.d += 1 + 0.0005 * p.u + 0.1 * test::lattice(static_cast<int>(i), 3, 5);
+    if (i % 11 == 0) p.d = std::numeric_limits<double>::quiet_NaN();
   }
-  const auto plane = ransac_plane(points, 0.5);
-  ASSERT_TRUE(plane);
-  EXPECT_NEAR(plane->disparity(600, 300), truth.disparity(600, 300), 0.5);
+  const QuantilePlane found = least_quantile_plane(points, {-39.8, 0.31, -0.0115});
+  EXPECT_NEAR(found.plane.a0, truth.a0, 1e-9);
+  EXPECT_NEAR(found.plane.a1, truth.a1, 1e-9);
+  EXPECT_NEAR(found.plane.a2, truth.a2, 1e-9);
+  EXPECT_NEAR(found.quantile_px, 0, 1e-9);
+}
+
+/// Of two exact planes the lower one, though it has fewer points.
+TEST(LeastQuantile, PrefersLowerOfTwoPlanes) {
+  std::vector<DisparityPoint> points = points_on(truth, 1000);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].d += i % 5 < 3 ? 1.4 : 0;
+  const QuantilePlane found = least_quantile_plane(points, {truth.a0 + 1.4, truth.a1, truth.a2});
+  EXPECT_NEAR(found.plane.a0, truth.a0, 1e-9);
+}
+
+/// Of residuals spread evenly over ±1 px a share c lies within c px, and (1 − c) / 2 below: c is five ninths where c is
+/// a third and what lies below.
+TEST(LeastQuantile, KeepsStartThatIsBest) {
+  std::vector<DisparityPoint> points = points_on(truth, 3000);
+  EXPECT_EQ(least_quantile_plane(points, truth).plane.a0, truth.a0);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].d += 2 * test::lattice(static_cast<int>(i), 4, 5) - 1;
+  EXPECT_NEAR(least_quantile_plane(points, truth).quantile_px, 0.5, 0.08);
+  const std::vector<DisparityPoint> missing(50, {1, 2, std::numeric_limits<double>::quiet_NaN()});
+  EXPECT_EQ(least_quantile_plane(missing, truth).plane.a1, truth.a1);
 }
 
 }  // namespace

@@ -226,5 +226,27 @@ TEST(RollOptions, RejectsValuesOutOfRange) {
   EXPECT_THROW(options.validate(), Error);
 }
 
+/// A pavement beside the road, 1.4 px above it, with the noise of matching. The plane known before matching leans
+/// against the kerb, half a pixel off.
+TEST(RoadGeometry, PavementDoesNotTiltRoad) {
+  for (const int road_columns : {280, 200, 150}) {
+    Image<float> map = road_map(0.02, 20, 0.15);
+    for (int v = 0; v < map.height(); ++v) {
+      for (int u = 0; u < map.width(); ++u) {
+        map(u, v) += static_cast<float>(0.1 * (test::lattice(u, v, 21) + test::lattice(u, v, 22) - 1));
+        if (u >= road_columns) map(u, v) += 1.4F;
+      }
+    }
+    const DisparityPlane leaning{19.9, 0.15 * std::cos(0.02), -0.15 * std::sin(0.02) + 0.006};
+    const RollEstimate g = estimate_roll(map, {}, leaning, 0, RollOptions{});
+    for (const int u : {0, road_columns}) {
+      for (const int v : {0, 179}) {
+        const double road = 20 + 0.15 * (v * std::cos(0.02) - u * std::sin(0.02));
+        EXPECT_NEAR(g.plane.disparity(u, v), road, 0.02) << road_columns << " columns of road";
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace roadstereo

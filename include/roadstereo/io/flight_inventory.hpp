@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -13,6 +14,8 @@
 
 #pragma GCC visibility push(default)
 namespace roadstereo::io {
+
+class PlaceIndex;
 
 /// One damage of the road, seen in one or several frames of a flight: the record behind every table, GIS layer and
 /// report.
@@ -58,7 +61,10 @@ std::vector<RoadDamage> worst_first(const std::vector<RoadDamage>& damages, bool
 class FlightInventory {
  public:
   /// `min_confidence`: DamageOptions::min_confidence, 0 … 1.
-  explicit FlightInventory(double min_confidence = DamageOptions{}.min_confidence) : min_confidence_(min_confidence) {}
+  explicit FlightInventory(double min_confidence = DamageOptions{}.min_confidence);
+  ~FlightInventory();
+  FlightInventory(FlightInventory&&) noexcept;
+  FlightInventory& operator=(FlightInventory&&) noexcept;
 
   /// Adds the next frame of the flight. Returns the id of the road damage of each of its damages, then of its
   /// candidates.
@@ -117,6 +123,8 @@ class FlightInventory {
   double min_confidence_;
   std::vector<RoadDamage> damages_;
   std::vector<Known> known_;             ///< of each of them
+  Ids recent_;                           ///< of those that one of the last frames shows, in ascending order
+  std::unique_ptr<PlaceIndex> places_;   ///< of all sightings with a place
   std::array<double, 2> motion_px_{};    ///< image motion from frame to frame
   bool motion_known_ = false;            ///< whether damages of the last frame determined it
   bool had_road_ = false;                ///< whether the last frame had a road

@@ -1,14 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <tuple>
 #include <utility>
 
 #include "core/log_odds.hpp"
 #include "core/order_statistics.hpp"
-#include "io/damage_colours.hpp"
 #include "io/flight/outline_overlap.hpp"
+#include "io/flight/place_index.hpp"
 #include "io/flight/standing.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
 #include "roadstereo/rigid_transform.hpp"
@@ -21,22 +20,6 @@ constexpr std::int64_t max_gap = 2;
 
 /// Overlap of two sightings of one damage, as a fraction of the smaller one.
 constexpr double min_overlap = 0.2;
-
-/// Severity as a number; the expected class where none has more than half of the probability. What has no classes, such
-/// as a bump, ranks as a depression of its depth.
-double severity_rank(const Damage& damage) {
-  static const SeverityScheme scheme = astm_d6433();
-  const Severity severity = severity_of(damage);
-  const auto rank = [](Severity of) { return static_cast<double>(of); };
-  if (severity == Severity::unknown && damage.metrics) {
-    const DamageMetrics& metrics = *damage.metrics;
-    return rank(scheme.find(Distress::depression)->severity(metrics.max_depth_m.value, metrics.diameter_m));
-  }
-  if (severity != Severity::uncertain || !damage.metrics) return rank(severity);
-  const SeverityProbabilities& of = damage.metrics->severity_probabilities;
-  return of.minor * rank(Severity::minor) + of.low * rank(Severity::low) + of.medium * rank(Severity::medium) +
-         of.high * rank(Severity::high);
-}
 
 /// Whether the damage is measured better: not cut by the border, then smaller error.
 bool is_better(const Damage& one, const Damage& other) {
@@ -92,20 +75,11 @@ bool is_part_of_rut(const Damage& one, const Damage& other) {
          std::min(area(one), area(other)) < max_share * std::max(area(one), area(other));
 }
 
-bool is_worse(const RoadDamage& one, const RoadDamage& other) {
-  const auto rank = [](const RoadDamage& damage) {
-    return std::tuple(-severity_rank(damage.best), -damage.best.max_depth().value, damage.id);
-  };
-  return rank(one) < rank(other);
-}
-
-std::vector<RoadDamage> worst_first(const std::vector<RoadDamage>& damages, bool candidates) {
-  std::vector<RoadDamage> sorted;
-  std::copy_if(damages.begin(), damages.end(), std::back_inserter(sorted),
-               [candidates](const RoadDamage& damage) { return damage.candidate == candidates; });
-  std::sort(sorted.begin(), sorted.end(), is_worse);
-  return sorted;
-}
+FlightInventory::FlightInventory(double min_confidence)
+    : min_confidence_(min_confidence), places_(std::make_unique<PlaceIndex>()) {}
+FlightInventory::~FlightInventory() = default;
+FlightInventory::FlightInventory(FlightInventory&&) noexcept = default;
+FlightInventory& FlightInventory::operator=(FlightInventory&&) noexcept = default;
 
 /// Outline of a damage of a frame in the world; none without a pose or an outline.
 std::optional<FlightInventory::Place> FlightInventory::place_of(const Damage& damage,
@@ -142,7 +116,8 @@ std::int64_t FlightInventory::seen_here(const Sighting& now, const FlightPose& p
     }
     return outline_overlap(outline, now.damage.metrics->outline_m);
   };
-  for (const Known& known : known_) {
+  for (const std::int64_t id : places_->near(now.place->piece, now.place->centre_m, now.place->radius_m)) {
+    const Known& known = known_[static_cast<std::size_t>(id) - 1];
     const Sighting& last = known.last;
     if (!may_be_one(last.damage, now.damage) || is_taken(last.id, taken)) continue;
     const double share = std::max(share_of(last.place), share_of(known.best_place));
@@ -158,8 +133,8 @@ std::int64_t FlightInventory::seen_here(const Sighting& now, const FlightPose& p
 std::int64_t FlightInventory::seen_in_picture(const Sighting& now, const Ids& taken) const {
   std::int64_t best = 0;
   double max_share = min_overlap;
-  for (const Known& known : known_) {
-    const Sighting& last = known.last;
+  for (const std::int64_t id : recent_) {
+    const Sighting& last = known_[static_cast<std::size_t>(id) - 1].last;
     if (!is_recent(last) || !may_be_one(last.damage, now.damage) || is_taken(last.id, taken)) continue;
     if (now.place && last.place && now.place->piece == last.place->piece) continue;  // seen elsewhere
     const auto frames = static_cast<double>(sequence_ - last.sequence);
@@ -217,8 +192,14 @@ void FlightInventory::remember(std::vector<Sighting> sightings) {
       along_u.push_back((now.damage.centroid_px[0] - last.damage.centroid_px[0]) / frames);
       along_v.push_back((now.damage.centroid_px[1] - last.damage.centroid_px[1]) / frames);
     }
+    recent_.push_back(now.id);
     last = std::move(now);
   }
+  std::sort(recent_.begin(), recent_.end());
+  recent_.erase(std::unique(recent_.begin(), recent_.end()), recent_.end());
+  std::erase_if(recent_, [&](std::int64_t id) {
+    return sequence_ - known_[static_cast<std::size_t>(id) - 1].last.sequence > max_gap;
+  });
   motion_known_ = !along_u.empty();
   if (motion_known_) motion_px_ = {upper_median(along_u), upper_median(along_v)};
 }
@@ -276,6 +257,7 @@ std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
     RoadDamage& on_road = damages_[static_cast<std::size_t>(now.id) - 1];
     Known& known = known_[static_cast<std::size_t>(now.id) - 1];
     Agreement& views = known.views;
+    if (now.place) places_->add(now.id, now.place->piece, now.place->centre_m, now.place->radius_m);
     ++on_road.sightings;
     on_road.last_frame = frame.index;
     const bool first_damage = !candidate && !views.is_damage;

@@ -101,14 +101,16 @@ FlightJournal FlightJournal::begin(const fs::path& file, const Provenance& prove
 FlightJournal FlightJournal::resume(const fs::path& file, const Provenance& provenance) {
   std::uintmax_t good_end = 0;
   std::int64_t lines = 0;
-  std::optional<FlightFrame> last;
+  std::string last_line;
   for_each_line(file, [&](const std::string& line, std::uintmax_t end) {
     if (lines == 0) require_same(line, provenance, file);
-    if (lines > 0) last = frame_of(line, file, lines + 1);
+    last_line = line;
     ++lines;
     good_end = end;
   });
   if (lines == 0) fail(file.string(), ": this is not a flight journal; start again without --resume");
+  std::optional<FlightFrame> last;
+  if (lines > 1) last = frame_of(last_line, file, lines);
   std::error_code error;
   fs::resize_file(file, good_end, error);
   if (error) fail_write(file, error.value());

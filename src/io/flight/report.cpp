@@ -78,9 +78,7 @@ ReportCell id_cell(const RoadDamage& damage, bool has_section) {
   const std::string id = std::to_string(damage.id);
   const auto value = static_cast<double>(damage.id);
   if (damage.candidate) return {id, value};
-  return {has_section ? "<a href=\"#damage-" + id + "\">" + id + "</a>"
-                      : "<span id=\"damage-" + id + "\">" + id + "</span>",
-          value};
+  return {has_section ? damage_link(damage.id, id) : "<span id=\"damage-" + id + "\">" + id + "</span>", value};
 }
 
 std::string place_text(const GeoPosition& position) {
@@ -143,10 +141,9 @@ std::string table_of(const FlightReportInput& input, const std::string& id, cons
 }
 
 std::string damages_of(const FlightReportInput& input) {
-  constexpr std::size_t max_rows = 200;
   std::vector<RoadDamage> rows;
   for (const ReportedDamage& reported : input.damages) {
-    if (rows.size() < max_rows) rows.push_back(reported.damage);
+    if (rows.size() < max_damage_rows) rows.push_back(reported.damage);
   }
   std::string hint = std::string(sorting_hint) + " ± is one standard error.";
   if (rows.size() < input.damages.size()) {
@@ -192,7 +189,11 @@ std::string sections_of(const FlightReportInput& input) {
 std::string segments_of(const FlightReportInput& input) {
   if (input.segments.empty()) return "";
   using S = RoadSegment;
-  static const std::vector<ReportColumn<S>> columns{
+  std::set<std::int64_t> with_row;
+  for (std::size_t i = 0; i < std::min(input.damages.size(), max_damage_rows); ++i) {
+    with_row.insert(input.damages[i].damage.id);
+  }
+  const std::vector<ReportColumn<S>> columns{
       {"From", "m", [](const S& s) { return fixed_cell(s.from_m, 0); }},
       {"To", "m", [](const S& s) { return fixed_cell(s.to_m, 0); }},
       {"Damages", "",
@@ -204,10 +205,10 @@ std::string segments_of(const FlightReportInput& input) {
          return s.damages > 0 ? plain_cell(s.area_m2) : ReportCell{"", 0.0};
        }},
       {"Worst", "",
-       [](const S& s) -> ReportCell {
+       [&with_row](const S& s) -> ReportCell {
          if (s.worst == 0) return {"", 0.0};
          const std::string id = std::to_string(s.worst);
-         return {"<a href=\"#damage-" + id + "\">" + id + "</a>", static_cast<double>(s.worst)};
+         return {with_row.contains(s.worst) ? damage_link(s.worst, id) : id, static_cast<double>(s.worst)};
        }},
       {"Roll", "°", [](const S& s) { return fixed_cell(to_degrees(s.roll_rad), 2); }},
       {"Camera height", "m", [](const S& s) { return fixed_cell(s.height_m, 2); }}};
@@ -232,7 +233,7 @@ std::string cards_of(const FlightReportInput& input) {
     damages.push_back(reported.damage.best);
     damages.back().id = static_cast<int>(reported.damage.id);
   }
-  return damages_cards(damages, input.candidates.size(), input.metric);
+  return damages_cards(damages, max_damage_rows, input.candidates.size(), input.metric);
 }
 
 bool has_points(const std::vector<double>& values) {

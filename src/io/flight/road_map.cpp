@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 #include "core/round_length.hpp"
@@ -80,7 +81,7 @@ class Dots {
  public:
   explicit Dots(const Projection& map) : map_(map) {}
 
-  void add(const RoadDamage& damage) {
+  void add(const RoadDamage& damage, bool has_row) {
     if (!damage.position) return;
     const auto [x, y] = map_.at(damage.position->lon_deg, damage.position->lat_deg);
     const auto [red, green, blue] = damage_colour(damage.best.kind, severity_of(damage.best));
@@ -91,9 +92,9 @@ class Dots {
     if (take_place(x + 9, y - label_height / 2)) {
       dot += "<text x=\"" + coordinate(x + 9) + "\" y=\"" + coordinate(y + 5) + "\">" + id + "</text>";
     }
-    dots_ = "<a href=\"#damage-" + id + "\">" + dot + "</a>" + dots_;
+    dots_.push_back(has_row ? damage_link(damage.id, dot) : dot);
   }
-  const std::string& svg() const { return dots_; }
+  std::string svg() const { return std::accumulate(dots_.rbegin(), dots_.rend(), std::string()); }
 
  private:
   bool take_place(double x, double y) {
@@ -106,7 +107,7 @@ class Dots {
 
   const Projection& map_;
   std::vector<std::array<double, 2>> labels_;
-  std::string dots_;
+  std::vector<std::string> dots_;  ///< the worst first
 };
 
 std::string metres_text(double metres) {
@@ -128,7 +129,7 @@ std::string road_map_svg(const FlightReportInput& input) {
   }
   const Projection map(points);
   Dots dots(map);
-  for (const ReportedDamage& reported : input.damages) dots.add(reported.damage);
+  for (std::size_t i = 0; i < input.damages.size(); ++i) dots.add(input.damages[i].damage, i < max_damage_rows);
   const double bar_m = round_length(width / 5 / map.pixels_per_metre());
   const auto [x, y] = map.at(points.front()[0], points.front()[1]);
   return fill(flight_templates::map, {{"width", number_text(width, 0)},

@@ -104,7 +104,7 @@ std::string damage_report(const DamageReportInput& input) {
   fields["size"] = std::to_string(map.ids.width()) + " × " + std::to_string(map.ids.height()) + " px";
   fields["notices"] = summary_notices(map);
   fields["head"] = property_list(input.head);
-  fields["cards"] = damages_cards(map.damages, map.candidates.size(), map.metric);
+  fields["cards"] = damages_cards(map.damages, map.damages.size(), map.candidates.size(), map.metric);
   fields["properties"] = property_list(input.properties);
   fields["sheet"] = sheet_figure(input);
   fields["overlay"] = overlay_figure(input);

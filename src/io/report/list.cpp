@@ -18,8 +18,7 @@ using Cell = ReportCell;
 using Column = ReportColumn<Damage>;
 
 Cell id_cell(const Damage& damage) {
-  const std::string id = std::to_string(damage.id);
-  return {"<a href=\"#damage-" + id + "\">" + id + "</a>", static_cast<double>(damage.id)};
+  return {damage_link(damage.id, std::to_string(damage.id)), static_cast<double>(damage.id)};
 }
 
 std::vector<Column> metric_columns() {

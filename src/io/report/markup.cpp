@@ -52,6 +52,10 @@ std::string fill(std::string_view text, const Fields& fields) {
   }
 }
 
+std::string damage_link(std::int64_t id, const std::string& content) {
+  return "<a href=\"#damage-" + std::to_string(id) + "\">" + content + "</a>";
+}
+
 std::string base64(std::span<const std::uint8_t> bytes) {
   constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;

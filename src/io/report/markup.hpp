@@ -18,6 +18,9 @@ using Fields = std::map<std::string, std::string, std::less<>>;
 /// Error naming a field without a value.
 std::string fill(std::string_view text, const Fields& fields);
 
+/// Returns a link to where the report tells of a damage; `content` is HTML.
+std::string damage_link(std::int64_t id, const std::string& content);
+
 std::string base64(std::span<const std::uint8_t> bytes);
 
 }  // namespace roadstereo::io

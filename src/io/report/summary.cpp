@@ -83,12 +83,14 @@ std::string total_cards(const Damages& damages, DamageKind kind) {
               escaped((below ? "missing volume " : "raised volume ") + measured_text(scaled(volume, litres), "L")));
 }
 
-std::string deepest_card(const Damages& damages) {
-  const Damage& deepest = *std::max_element(damages.begin(), damages.end(), [](const Damage& one, const Damage& other) {
+std::string deepest_card(const Damages& damages, std::size_t listed) {
+  const auto at = std::max_element(damages.begin(), damages.end(), [](const Damage& one, const Damage& other) {
     return one.max_depth().value < other.max_depth().value;
   });
-  const std::string link =
-      "<a href=\"#damage-" + std::to_string(deepest.id) + "\">damage " + std::to_string(deepest.id) + "</a>";
+  const Damage& deepest = *at;
+  const bool has_link = static_cast<std::size_t>(at - damages.begin()) < listed;
+  const std::string name = "damage " + std::to_string(deepest.id);
+  const std::string link = has_link ? damage_link(deepest.id, name) : name;
   if (!deepest.metrics) return card("Maximum disparity change", measured_text(deepest.max_depth_px, "px"), link);
   const bool below = deepest.kind == DamageKind::depression;
   return card(below ? "Maximum depth" : "Maximum height", measured_text(scaled(deepest.metrics->max_depth_m, mm), "mm"),
@@ -97,7 +99,7 @@ std::string deepest_card(const Damages& damages) {
 
 }  // namespace
 
-std::string damages_cards(const Damages& damages, std::size_t candidates, bool metric) {
+std::string damages_cards(const Damages& damages, std::size_t listed, std::size_t candidates, bool metric) {
   if (damages.empty()) return "";
   const std::string apart = candidates == 0 ? ""
                                             : "; " + std::to_string(candidates) +
@@ -107,7 +109,7 @@ std::string damages_cards(const Damages& damages, std::size_t candidates, bool m
     cards += "<div class=\"card\"><div class=\"name\">Severity</div><div class=\"chips\">" + severity_chips(damages) +
              "</div></div>";
   }
-  cards += deepest_card(damages);
+  cards += deepest_card(damages, listed);
   for (const DamageKind kind : {DamageKind::depression, DamageKind::protrusion}) {
     if (metric && count_of(damages, kind) > 0) cards += total_cards(damages, kind);
   }

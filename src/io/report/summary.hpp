@@ -8,8 +8,9 @@
 
 namespace roadstereo::io {
 
-/// Returns the summary cards: number of damages by distress and severity, total area and volume.
-std::string damages_cards(const std::vector<Damage>& damages, std::size_t candidates, bool metric);
+/// Returns the summary cards: number of damages by distress and severity, total area and volume. The report tells of
+/// the first `listed` damages, which links may lead to.
+std::string damages_cards(const std::vector<Damage>& damages, std::size_t listed, std::size_t candidates, bool metric);
 
 /// Returns the notice that no damage was found, `where`: "", or " in …"; candidates are pointed to.
 std::string no_damage_notice(const std::string& where, bool has_candidates);

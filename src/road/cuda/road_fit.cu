@@ -1,9 +1,10 @@
-// Floor: at most about 6000 disparities of the map, a sector of 32 bytes each: 0.2 MB; then that of robust_fit.hpp, and
-// 40 operations a point for the moments, six of them in double precision.
+// Floor: at most about 6000 disparities of the map, a sector of 32 bytes each: 0.2 MB; then those of block_quantile.hpp
+// and robust_fit.hpp, and 40 operations a point for the moments, six of them in double precision.
 
 #include "core/cuda/launch.hpp"
 #include "core/cuda/unroll.hpp"
 #include "road/bend.hpp"
+#include "road/cuda/block_quantile.hpp"
 #include "road/cuda/road_fit.hpp"
 #include "road/cuda/robust_fit.hpp"
 #include "road/map_sample.hpp"
@@ -237,10 +238,13 @@ __global__ void __launch_bounds__(max_fit_threads)
   RoadFitStatistics own{start, {start, 0, 0, 0, 0}, 0, 1, {}};
   take_sample(map, sampled);
   if (max_iterations > 0) {
+    __syncthreads();  // other threads have written a part of the sample
     const DevicePoints points{sampled.u, sampled.v, sampled.d, sampled.sample.count()};
-    const RobustFit fit{0, true, max_iterations};
+    static_assert(sizeof state.scratch >= quantile_scratch * sizeof(std::uint64_t));
+    const QuantilePlane nearest = BlockQuantile(points).run(start, reinterpret_cast<std::uint64_t*>(state.scratch));
+    const RobustFit fit{start_scale_of(nearest.quantile_px), true, max_iterations};
     RegisterSelect select(state.select);
-    own.fit = BlockFit(points, fit, state, select).run(start, sampled.weights);
+    own.fit = BlockFit(points, fit, state, select).run(nearest.plane, sampled.weights);
     own.plane = own.fit.plane;
     own.points = own.fit.points;
   }

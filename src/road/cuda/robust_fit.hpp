@@ -65,23 +65,18 @@ class BlockFit {
   __device__ FittedPlane run(const DisparityPlane& start, float* weights) {
     FittedPlane fitted{start, 0, 0, 0, begin(start, weights)};
     if (fitted.points < 3) return fitted;
-    // The median of the first residuals is found where that of the others is: its code is long.
-    bool starting = !(fit_.start_scale_px > 0);
-    if (leader()) take_scale(starting ? max_start_scale_px : fit_.start_scale_px);
+    if (leader()) take_scale(fit_.start_scale_px);
     __syncthreads();
-    while (starting || fitted.iterations < fit_.max_iterations) {
-      if (!starting) {
-        ++fitted.iterations;
-        step(weights);
-        if (state_.good == 0) return fitted;
-        update_residuals();
-      }
-      const float limit = starting ? start_limit : state_.window;
-      const SelectedKey median = select_magnitude(limit, starting);
-      if (leader()) take_median(magnitude_of(median, limit), median.of, starting);
+    while (fitted.iterations < fit_.max_iterations) {
+      ++fitted.iterations;
+      step(weights);
+      if (state_.good == 0) return fitted;
+      update_residuals();
+      const float limit = state_.window;
+      const SelectedKey median = select_magnitude(limit);
+      if (leader()) take_median(magnitude_of(median, limit), median.of);
       __syncthreads();
-      if (!starting && state_.settled != 0) break;
-      starting = false;
+      if (state_.settled != 0) break;
     }
     fitted.plane = state_.plane;
     fitted.scale_px = state_.scale;
@@ -138,25 +133,19 @@ class BlockFit {
     return found;
   }
 
-  /// The clamp of the first scale makes any median beyond it the same.
-  static constexpr auto start_limit = static_cast<float>(1.01 * max_start_scale_px / gaussian_mad);
-
   /// Magnitudes as keys of three digits, in steps of limit / magnitude_keys.
   static constexpr int magnitude_digits = 3;
   static constexpr std::uint32_t last_key = (1U << magnitude_digits * RegisterSelectScratch::bits) - 1;
   static constexpr auto magnitude_keys = static_cast<float>(last_key);
 
-  /// Median of the magnitudes below `limit`. With `all`, larger ones count as `limit`.
-  __device__ SelectedKey select_magnitude(float limit, bool all) {
+  /// Median of the magnitudes below `limit`.
+  __device__ SelectedKey select_magnitude(float limit) {
     const float per_key = magnitude_keys / limit;
-    const std::uint32_t of_larger = all ? last_key : RegisterSelect::no_key;
     std::uint32_t keys[own_points];
     ROADSTEREO_UNROLL
     for (int k = 0; k < own_points; ++k) {
       const float magnitude = fabsf(residuals_[k]);
-      keys[k] = magnitude < limit    ? static_cast<std::uint32_t>(magnitude * per_key)
-                : magnitude >= limit ? of_larger
-                                     : RegisterSelect::no_key;
+      keys[k] = magnitude < limit ? static_cast<std::uint32_t>(magnitude * per_key) : RegisterSelect::no_key;
     }
     return select_.select<magnitude_digits>(keys, MiddleRank{});
   }
@@ -175,11 +164,7 @@ class BlockFit {
   }
 
   /// The scale after a step, and whether that was the last one.
-  __device__ void take_median(double median, int points, bool starting) {
-    if (starting) {
-      take_scale(start_scale_of(median));
-      return;
-    }
+  __device__ void take_median(double median, int points) {
     const double last_scale = state_.scale, scale = narrowed_scale(median, last_scale);
     const DisparityPlane &now = state_.plane, &last = state_.last;
     const double by = now.disparity(state_.far_u, state_.far_v) - last.disparity(state_.far_u, state_.far_v);

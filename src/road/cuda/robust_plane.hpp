@@ -22,7 +22,7 @@ inline constexpr int max_fit_points = 7168;
 void require_fit_points(int count);
 
 struct RobustFit {
-  double start_scale_px;  ///< window that the fit begins with; 0: from the median of the residuals to the start plane
+  double start_scale_px;  ///< window that the fit begins with
   bool with_roll;
   int max_iterations;
 };

@@ -135,6 +135,23 @@ TEST_F(FlightJournalFile, ResumesAfterCutLine) {
   EXPECT_EQ(seen, 2);
 }
 
+TEST_F(FlightJournalFile, BrokenLineIsToldWhenItIsRead) {
+  {
+    FlightJournal journal = FlightJournal::begin(file_, {});
+    journal.append(frame_of(0, {}));
+  }
+  std::ofstream(file_, std::ios::app) << "no frame\n" << flight_frame_json(frame_of(2, {})) << '\n';
+  const FlightJournal journal = FlightJournal::resume(file_, {});
+  EXPECT_EQ(journal.frames(), 3);
+  EXPECT_EQ(journal.last()->index, 2);
+  try {
+    journal.for_each([](const FlightFrame&) {});
+    FAIL() << "a line that is no frame was taken";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find(file_.string() + ", line 3: "), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(FlightJournalFile, RejectsOtherHeader) {
   { FlightJournal::begin(file_, {{"source", "a"}, {"--every", "1"}}); }
   EXPECT_EQ(FlightJournal::resume(file_, {{"source", "a"}, {"--every", "1"}}).frames(), 0);
