@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/order_statistics.hpp"
+#include "road/random_number.hpp"
 
 namespace roadstereo {
 
@@ -71,6 +72,59 @@ std::optional<DisparityPlane> plane_through(const DisparityPoint& a, const Dispa
   DisparityPlane plane;
   if (!plane_through({a.u, a.v, a.d}, {b.u, b.v, b.d}, {c.u, c.v, c.d}, plane)) return std::nullopt;
   return plane;
+}
+
+namespace {
+
+/// Scores planes by points in groups, and stops where the rest cannot make one the best.
+class PreemptiveScorer {
+ public:
+  PreemptiveScorer(ScratchVector<DisparityPoint> points, double tolerance_px)
+      : points_(std::move(points)), tolerance_px_(tolerance_px) {}
+
+  /// Score of the plane; some number up to `least` when it cannot be higher.
+  double score(const DisparityPlane& plane, double least) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (i % group == 0 && sum + static_cast<double>(points_.size() - i) <= least) break;  // a point adds at most 1
+      const double x = (points_[i].d - plane.disparity(points_[i].u, points_[i].v)) / tolerance_px_;
+      sum += std::max(0.0, 1 - x * x);
+    }
+    return sum;
+  }
+
+ private:
+  static constexpr std::size_t group = 25;
+
+  ScratchVector<DisparityPoint> points_;
+  double tolerance_px_;
+};
+
+}  // namespace
+
+std::optional<DisparityPlane> ransac_plane(std::span<const DisparityPoint> points, double tolerance_px) {
+  constexpr int iterations = 300;
+  constexpr std::size_t samples = 400;
+  if (points.size() < 3) return std::nullopt;
+  Sampler sampler;
+  const auto draw = [&]() -> const DisparityPoint& { return points[sampler.below(points.size())]; };
+  auto drawn = scratch_vector<DisparityPoint>();
+  drawn.reserve(samples);
+  for (std::size_t i = 0; i < samples; ++i) drawn.push_back(draw());
+  const PreemptiveScorer scorer(std::move(drawn), tolerance_px);
+  std::optional<DisparityPlane> best;
+  double best_score = 0;
+  for (int i = 0; i < iterations; ++i) {
+    const DisparityPoint &a = draw(), &b = draw(), &c = draw();
+    const auto plane = plane_through(a, b, c);
+    if (!plane) continue;
+    const double score = scorer.score(*plane, best_score);
+    if (score > best_score) {
+      best_score = score;
+      best = plane;
+    }
+  }
+  return best;
 }
 
 namespace {

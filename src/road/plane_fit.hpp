@@ -9,7 +9,8 @@
 #include "road/robust_weights.hpp"
 #include "roadstereo/road_model.hpp"
 
-// Plane fits in disparity space: least quantile of squares for a start, and IRLS with Tukey's biweight.
+// Plane fits in disparity space: preemptive RANSAC or the least quantile of squares for a start, and IRLS with Tukey's
+// biweight.
 
 namespace roadstereo {
 
@@ -77,6 +78,11 @@ struct IrlsPlaneFit {
 /// `start_scale_px`. Nothing when too few points stay.
 std::optional<IrlsPlaneFit> fit_plane_irls(std::span<const DisparityPoint> points, const DisparityPlane& start,
                                            double start_scale_px, bool with_roll, int max_iterations);
+
+/// Preemptive RANSAC plane fit: the plane through three of the points that the others support most, each within
+/// `tolerance_px` by 1 − (residual / tolerance)²: a start that no outliers pull. Deterministic. Nothing when no three
+/// points span a plane.
+std::optional<DisparityPlane> ransac_plane(std::span<const DisparityPoint> points, double tolerance_px);
 
 /// Least quantile of squares: the best of `start` and of planes through three of the points. `d` is NaN where a point
 /// is missing. Deterministic.

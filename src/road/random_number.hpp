@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "roadstereo/host_device.hpp"
@@ -13,5 +14,15 @@ ROADSTEREO_HD inline std::uint64_t random_number(std::uint64_t k, std::uint64_t 
   z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
   return (z ^ (z >> 31)) % count;
 }
+
+/// Draws samples: these numbers, one after another.
+class Sampler {
+ public:
+  /// A number in [0, count).
+  std::size_t below(std::size_t count) { return static_cast<std::size_t>(random_number(drawn_++, count)); }
+
+ private:
+  std::uint64_t drawn_ = 0;
+};
 
 }  // namespace roadstereo

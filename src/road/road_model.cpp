@@ -142,9 +142,9 @@ Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, PlaneM
   return result;
 }
 
-/// The plane that the image around `plane` supports, by the least quantile over cells of equal size; `plane` where
-/// there is none. Single blocks match where the texture is: on a pavement or a verge rather than on a smooth road, so
-/// that the plane tips over.
+/// The plane that most of the image around `plane` supports, by RANSAC over cells of equal size; `plane` where there is
+/// none. Single blocks match where the texture is: on a pavement or a verge rather than on a smooth road, so that the
+/// plane tips over.
 DisparityPlane fit_evenly(const FinePair& pair, const DisparityPlane& plane, const TiltLimit& limit, bool with_roll,
                           int threads) {
   const int factor = pair.factor();
@@ -153,10 +153,9 @@ DisparityPlane fit_evenly(const FinePair& pair, const DisparityPlane& plane, con
                                                      even_range_px, places, threads, pair.masked());
   const auto points = points_to_full_resolution(found.points, factor);
   if (points.size() < min_even_points) return plane;
-  const QuantilePlane start = least_quantile_plane(points, plane);
-  if (!limit.can_be_road(start.plane)) return plane;
-  const double scale = std::min(fine_fit_scale * factor, start_scale_of(start.quantile_px));
-  const auto fit = fit_plane_irls(points, start.plane, scale, with_roll, fine_fit_iterations);
+  const auto start = ransac_plane(points, even_tolerance * factor);
+  if (!start || !limit.can_be_road(*start)) return plane;
+  const auto fit = fit_plane_irls(points, *start, fine_fit_scale * factor, with_roll, fine_fit_iterations);
   return fit && limit.can_be_road(fit->plane) ? fit->plane : plane;
 }
 

@@ -39,8 +39,10 @@ inline constexpr FineSearch close_search_again{2, 1500};
 inline constexpr FineSearch first_search_again{4, 700};  ///< around the last frame's plane
 
 /// Of the search that covers the image evenly: distance of its samples, and how far from the plane it looks, pixels of
-/// the shrunk image.
+/// the shrunk image, as is the tolerance of its RANSAC, three deviations of a cell: a plane through both the road and a
+/// pavement is far from most cells.
 inline constexpr int even_spacing_px = 5, even_range_px = 7;
+inline constexpr double even_tolerance = 0.5;
 inline constexpr std::size_t min_even_points = 40;
 /// Its plane is taken unless it has less than this share of the evidence of the plane it started from.
 inline constexpr double min_even_evidence = 0.75;

@@ -33,7 +33,7 @@ ROADSTEREO_HD inline bool robust_fit_settled(double by_px, double by_a2, double 
 /// The largest scale that the robust fit of a map begins with: too narrow for most kerbs.
 inline constexpr double max_start_scale_px = 0.6;
 
-/// From the quantile of least_quantile.hpp. Of a road alone, with normal noise, half of the residuals are within it.
+/// From the quantile of least_quantile.hpp: of a road alone, with normal noise, half of the residuals are within it.
 ROADSTEREO_HD inline double start_scale_of(double quantile_px) {
   const double scale = gaussian_mad * quantile_px;
   if (scale < min_scale_px) return min_scale_px;

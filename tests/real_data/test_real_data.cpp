@@ -204,9 +204,7 @@ TEST_P(PotholesRealData, RoadIsFlatAndPotholeLiesBelow) {
       }
     }
   }
-  PlaneSums sums;
-  for (const DisparityPoint& point : road) sums.add(point);
-  const auto start = sums.plane();
+  const auto start = ransac_plane(road, 1.0);
   ASSERT_TRUE(start);
   const auto plane = fit_plane_irls(road, *start, 1.0, true, 100);
   ASSERT_TRUE(plane);

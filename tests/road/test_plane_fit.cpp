@@ -82,6 +82,16 @@ TEST(IrlsPlaneFit, CountsItsSteps) {
   for (const int most : {1, 2}) EXPECT_EQ(fit_plane_irls(points, start, 0.6, true, most)->iterations, most);
 }
 
+TEST(SearchPlane, FindsPlaneOfMajority) {
+  auto points = points_on(truth, 2000);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i % 5 < 2) points[i].d = 100 * test::lattice(static_cast<int>(i), 3, 5);
+  }
+  const auto plane = ransac_plane(points, 0.5);
+  ASSERT_TRUE(plane);
+  EXPECT_NEAR(plane->disparity(600, 300), truth.disparity(600, 300), 0.5);
+}
+
 /// Of five points two lie on the plane, two on one a pixel higher at one side, one anywhere above.
 TEST(LeastQuantile, IsPlaneOfTwoFifths) {
   std::vector<DisparityPoint> points = points_on(truth, 1000);
@@ -106,13 +116,15 @@ TEST(LeastQuantile, PrefersLowerOfTwoPlanes) {
   EXPECT_NEAR(found.plane.a0, truth.a0, 1e-9);
 }
 
-/// Of residuals spread evenly over ±1 px a share c lies within c px, and (1 − c) / 2 below: c is five ninths where c is
-/// a third and what lies below.
+/// Of residuals spread evenly over ±1 px a share c lies within c px, and (1 − c) / 2 below: of the true plane c is a
+/// half where it is a quarter and what lies below. Of a plane three quarters lower, with nothing below, it is a
+/// quarter.
 TEST(LeastQuantile, KeepsStartThatIsBest) {
   std::vector<DisparityPoint> points = points_on(truth, 3000);
   EXPECT_EQ(least_quantile_plane(points, truth).plane.a0, truth.a0);
   for (std::size_t i = 0; i < points.size(); ++i) points[i].d += 2 * test::lattice(static_cast<int>(i), 4, 5) - 1;
-  EXPECT_NEAR(least_quantile_plane(points, truth).quantile_px, 0.5, 0.08);
+  EXPECT_GT(least_quantile_plane(points, truth).quantile_px, 0.2);
+  EXPECT_LT(least_quantile_plane(points, truth).quantile_px, 0.55);
   const std::vector<DisparityPoint> missing(50, {1, 2, std::numeric_limits<double>::quiet_NaN()});
   EXPECT_EQ(least_quantile_plane(missing, truth).plane.a1, truth.a1);
 }

@@ -248,5 +248,26 @@ TEST(RoadGeometry, PavementDoesNotTiltRoad) {
   }
 }
 
+/// The plane of a wavy road lies among the waves, lower than their middle, where the quantile is least.
+TEST(RoadGeometry, WavyRoadHasPlaneBetweenTroughsAndCrests) {
+  constexpr double amplitude = 0.3, noise = 0.05;
+  Image<float> map = road_map(0.02, 20, 0.15);
+  for (int v = 0; v < map.height(); ++v) {
+    for (int u = 0; u < map.width(); ++u) {
+      map(u, v) +=
+          static_cast<float>(amplitude * std::sin(0.35 * v + 0.1 * u) + noise * (2 * test::lattice(u, v, 23) - 1));
+    }
+  }
+  const RollEstimate g = estimate_roll(map, {}, std::nullopt, 0, RollOptions{});
+  EXPECT_NEAR(g.roll_rad, 0.02, 0.002);
+  for (const int u : {0, 319}) {
+    for (const int v : {0, 179}) {
+      const double middle = 20 + 0.15 * (v * std::cos(0.02) - u * std::sin(0.02));
+      EXPECT_LT(g.plane.disparity(u, v), middle + 0.1 * amplitude);
+      EXPECT_GT(g.plane.disparity(u, v), middle - amplitude - noise);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace roadstereo
