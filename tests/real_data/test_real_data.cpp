@@ -221,9 +221,9 @@ TEST_P(PotholesRealData, RoadIsFlatAndPotholeLiesBelow) {
 INSTANTIATE_TEST_SUITE_P(Pairs, PotholesRealData,
                          testing::Values(Pothole{"p1_01", "calibration_p12.yaml", 23.08, 0.1108, 0.162, 0.0913},
                                          Pothole{"p1_05", "calibration_p12.yaml", 24.2, 0.1138, 0.105, 0.067},
-                                         Pothole{"p1_12", "calibration_p12.yaml", 17.41, 0.1128, 0.0658, 0.0287},
-                                         Pothole{"p2_17", "calibration_p12.yaml", 20.48, 0.1133, 0.417, 0.329},
-                                         Pothole{"p3_03", "calibration_p3.yaml", 12.73, 0.1204, 0.0574, 0.00967}),
+                                         Pothole{"p1_12", "calibration_p12.yaml", 17.41, 0.1128, 0.0658, 0.0396},
+                                         Pothole{"p2_17", "calibration_p12.yaml", 20.48, 0.1133, 0.417, 0.416},
+                                         Pothole{"p3_03", "calibration_p3.yaml", 12.73, 0.1204, 0.0574, 0.0149}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 /// A part of a grey image.
