@@ -1,6 +1,7 @@
 #include "road/plane_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -129,70 +130,83 @@ std::optional<DisparityPlane> ransac_plane(std::span<const DisparityPoint> point
 
 namespace {
 
-/// Residuals of the points that planes are compared by.
+/// The points that planes are compared by, in single precision: their residuals from the start, which are small.
 class ComparedPoints {
  public:
-  explicit ComparedPoints(std::span<const DisparityPoint> points) {
+  ComparedPoints(std::span<const DisparityPoint> points, const DisparityPlane& start) : start_(start) {
     const auto count = static_cast<int>(points.size());
     for (int k = 0; count > 0 && k < compared_points; ++k) {
       const DisparityPoint& point = points[static_cast<std::size_t>(compared_point(k, count))];
-      if (!std::isnan(point.d)) points_.push_back(point);
+      if (std::isnan(point.d)) continue;
+      u_[count_] = static_cast<float>(point.u);
+      v_[count_] = static_cast<float>(point.v);
+      from_start_[count_++] = static_cast<float>(point.d - start.disparity(point.u, point.v));
     }
-    residuals_.resize(points_.size());
   }
-  bool empty() const { return points_.empty(); }
+  bool empty() const { return count_ == 0; }
 
-  void measure(const DisparityPlane& plane) {
-    std::transform(points_.begin(), points_.end(), residuals_.begin(),
-                   [&](const DisparityPoint& p) { return p.d - plane.disparity(p.u, p.v); });
-  }
-  /// Whether the quantile is less than `limit`.
-  bool has_quantile_below(double limit) const {
-    int near = 0;
-    for (const double r : residuals_) near += std::abs(r) < limit ? quantile_weight(r < 0) : 0;
-    return near >= wanted();
-  }
-  double quantile() {
-    const int quantile = wanted();
-    std::sort(residuals_.begin(), residuals_.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-    int near = 0;
-    for (const double r : residuals_) {
-      near += quantile_weight(r < 0);
-      if (near >= quantile) return std::abs(r);
+  /// Whether the quantile of a plane is less than `limit`. Vectorises.
+  bool has_quantile_below(const DisparityPlane& plane, float limit) const {
+    const Step step(start_, plane);
+    int near = 0, below = 0;
+    for (std::size_t k = 0; k < count_; ++k) {
+      const float residual = from_start_[k] - step.at(u_[k], v_[k]);
+      const int is_below = residual < 0 ? 1 : 0;
+      below += is_below;
+      near += std::abs(residual) < limit ? 1 + is_below : 0;
     }
-    return std::abs(residuals_.back());
+    return near >= quantile_of(static_cast<int>(count_), below);
+  }
+
+  float quantile(const DisparityPlane& plane) const {
+    const Step step(start_, plane);
+    std::array<float, compared_points> residuals;
+    for (std::size_t k = 0; k < count_; ++k) residuals[k] = from_start_[k] - step.at(u_[k], v_[k]);
+    const auto end = residuals.begin() + static_cast<std::ptrdiff_t>(count_);
+    const auto below = std::count_if(residuals.begin(), end, [](float r) { return r < 0; });
+    std::sort(residuals.begin(), end, [](float a, float b) { return std::abs(a) < std::abs(b); });
+    int left = quantile_of(static_cast<int>(count_), static_cast<int>(below));
+    const auto at =
+        std::find_if(residuals.begin(), end, [&](float r) { return (left -= quantile_weight(r < 0)) <= 0; });
+    return std::abs(at == end ? *(end - 1) : *at);
   }
 
  private:
-  int wanted() const {
-    const auto below = std::count_if(residuals_.begin(), residuals_.end(), [](double r) { return r < 0; });
-    return quantile_of(static_cast<int>(residuals_.size()), static_cast<int>(below));
-  }
+  /// Difference of a plane and the start.
+  struct Step {
+    float a0, a1, a2;
+    Step(const DisparityPlane& start, const DisparityPlane& plane)
+        : a0(static_cast<float>(plane.a0 - start.a0)),
+          a1(static_cast<float>(plane.a1 - start.a1)),
+          a2(static_cast<float>(plane.a2 - start.a2)) {}
+    float at(float u, float v) const { return a0 + a1 * v + a2 * u; }
+  };
 
-  ScratchVector<DisparityPoint> points_ = scratch_vector<DisparityPoint>();
-  ScratchVector<double> residuals_ = scratch_vector<double>();
+  DisparityPlane start_;
+  std::size_t count_ = 0;
+  std::array<float, compared_points> u_, v_, from_start_;
 };
 
 }  // namespace
 
 QuantilePlane least_quantile_plane(std::span<const DisparityPoint> points, const DisparityPlane& start) {
-  ComparedPoints compared(points);
+  const ComparedPoints compared(points, start);
   if (compared.empty()) return {start, 0};
-  compared.measure(start);
-  QuantilePlane best{start, compared.quantile()};
+  DisparityPlane best = start;
+  float least = compared.quantile(start);
   const auto count = static_cast<int>(points.size());
   for (int k = 0; k < tried_planes; ++k) {
-    const auto corner = [&](int of_plane) {
+    const auto corner = [&](int of_plane) -> const DisparityPoint& {
       return points[static_cast<std::size_t>(corner_point(k, of_plane, count))];
     };
-    const DisparityPoint a = corner(0), b = corner(1), c = corner(2);
+    const DisparityPoint &a = corner(0), &b = corner(1), &c = corner(2);
     if (std::isnan(a.d + b.d + c.d)) continue;
     const auto plane = plane_through(a, b, c);
-    if (!plane) continue;
-    compared.measure(*plane);
-    if (compared.has_quantile_below(best.quantile_px)) best = {*plane, compared.quantile()};
+    if (!plane || !compared.has_quantile_below(*plane, least)) continue;
+    best = *plane;
+    least = compared.quantile(best);
   }
-  return best;
+  return {best, least};
 }
 
 }  // namespace roadstereo
