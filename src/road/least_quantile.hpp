@@ -7,10 +7,10 @@
 #include "roadstereo/host_device.hpp"
 
 // Least quantile of squares (LQS, Rousseeuw 1984), where the robust fit of a map starts, on the host and on the device:
-// the plane that a share of the points is nearest to. A pavement or a bank of snow beside the road may hold two thirds
-// of the points, and lie within a pixel or two of it. A fit from a plane between both has both in its window, and stays
-// there. Since nothing lies below a road but its damage and a verge, the share is a quarter of the points, and as many
-// again as lie below the plane.
+// the plane that a share of the points is nearest to. A pavement or a bank of snow beside the road may hold more than
+// half of the points, and lie within a pixel or two of it. A fit from a plane between both has both in its window, and
+// stays there. Since nothing lies below a road but its damage and a verge, the share is a quarter of the points, and as
+// many again as lie below the plane.
 namespace roadstereo {
 
 /// Planes that are tried: through three random points each. Where a third of the points is road, 11 of them are its.
