@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "core/grey_weights.hpp"
+#include "core/image_limits.hpp"
 #include "core/require_size.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/image.hpp"
@@ -139,10 +140,10 @@ FrameView FrameView::rgba16(const std::uint16_t* data, int width, int height, st
 }
 
 void require_image_size(int width, int height) {
-  constexpr int min_side = 32, max_side = 8192;
-  if (width >= min_side && height >= min_side && width <= max_side && height <= max_side) return;
-  fail("the image has ", width, "×", height, " pixels; it must have between ", min_side, "×", min_side, " and ",
-       max_side, "×", max_side);
+  if (width >= min_image_side && height >= min_image_side && width <= max_image_side && height <= max_image_side)
+    return;
+  fail("the image has ", width, "×", height, " pixels; it must have between ", min_image_side, "×", min_image_side,
+       " and ", max_image_side, "×", max_image_side);
 }
 
 double white_sample(SampleType type, double white_level) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/image_limits.hpp"
 #include "io/calibration_formats.hpp"
 #include "roadstereo/error.hpp"
 
@@ -17,8 +18,8 @@ void check_finite(double value, const std::string& source, const std::string& na
 
 void check_focal(double focal, int width, const std::string& source, const std::string& name) {
   check_finite(focal, source, name);
-  const double min_focal = 0.2 * (width > 0 ? width : 32);  // images here are 32 … 8192 pixels wide
-  const double max_focal = 50.0 * (width > 0 ? width : 8192);
+  const double min_focal = 0.2 * (width > 0 ? width : min_image_side);
+  const double max_focal = 50.0 * (width > 0 ? width : max_image_side);
   if (!(focal >= min_focal && focal <= max_focal)) {
     fail(source, ": the focal length is ", focal, "; it must be between ", min_focal, " and ", max_focal, " pixels (",
          name, ")");

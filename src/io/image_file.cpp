@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/image_limits.hpp"
 #include "core/map_value.hpp"
 #include "io/encoded_frame.hpp"
 #include "io/file_bytes.hpp"
@@ -19,7 +20,6 @@ namespace {
 
 constexpr std::size_t max_bytes = std::size_t{1} << 30U;
 constexpr int min_side = 32;
-constexpr int max_side = 8192;
 constexpr double kitti_steps = 256;  // per pixel of disparity
 
 cv::Mat decode(const std::string& path, const std::vector<std::uint8_t>& bytes) {
@@ -45,7 +45,7 @@ std::vector<std::uint8_t> encode(const char* extension, const cv::Mat& mat, cons
   return bytes;
 }
 
-/// Decodes PNG, JPEG or TIFF. Throws Error if a side is not within `smallest_side` … `max_side` pixels.
+/// Decodes PNG, JPEG or TIFF. Throws Error if a side is not within `smallest_side` … `max_image_side` pixels.
 cv::Mat decode_checked(const std::string& path, const std::vector<std::uint8_t>& bytes, int smallest_side,
                        ImageHeader& header) {
   std::vector<std::uint8_t> essential;
@@ -56,7 +56,7 @@ cv::Mat decode_checked(const std::string& path, const std::vector<std::uint8_t>&
   } else {
     header = check_tiff(path, bytes);
   }
-  check_size(path, header.width, header.height, smallest_side, max_side);
+  check_size(path, header.width, header.height, smallest_side, max_image_side);
   if (is_tiff(bytes)) check_tiff_decodes(path, bytes);
   return decode(path, essential.empty() ? bytes : essential);
 }

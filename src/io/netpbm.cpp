@@ -7,13 +7,11 @@
 #include <limits>
 #include <string_view>
 
+#include "core/image_limits.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
 namespace {
-
-constexpr int min_side = 32;
-constexpr int max_side = 8192;
 
 bool is_space(std::uint8_t c) {
   return c == ' ' || (c >= '\t' && c <= '\r');
@@ -141,7 +139,7 @@ Frame read_netpbm(const std::string& path, Bytes bytes) {
   Frame frame;
   frame.width = words.number<int>("the width");
   frame.height = words.number<int>("the height");
-  check_size(path, frame.width, frame.height, min_side, max_side);
+  check_size(path, frame.width, frame.height, min_image_side, max_image_side);
   header.white = words.number<int>("the largest value");
   if (header.white < 1 || header.white > 65535) {
     fail(path, ": the largest value is ", header.white, "; it must be between 1 and 65535");
@@ -168,7 +166,7 @@ Image<float> read_pfm(const std::string& path, Bytes bytes) {
   Words words(path, bytes);
   const int width = words.number<int>("the width");
   const int height = words.number<int>("the height");
-  check_size(path, width, height, 1, max_side);
+  check_size(path, width, height, 1, max_image_side);
   const auto scale = words.number<double>("the scale");
   if (!std::isfinite(scale) || scale == 0) {
     fail(path, ": the scale is ", scale, "; it must not be 0, its sign is the byte order");

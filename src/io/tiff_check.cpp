@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/image_limits.hpp"
 #include "io/image_check.hpp"
 #include "roadstereo/error.hpp"
 
@@ -67,7 +68,8 @@ class Directory {
     const std::size_t count = number(entry + 4, 4);
     const std::size_t at = count * size <= 4 ? entry + 8 : number(entry + 8, 4);
     need(at, count * size);
-    constexpr std::size_t max_count = 2 * 8192 * 8192 / 256;  // strips or tiles of an image of the largest size
+    constexpr std::size_t max_count =
+        2 * std::size_t{max_image_side} * max_image_side / 256;  // strips or tiles of an image of the largest size
     if (count > max_count) fail(path_, ": the TIFF file is damaged: a tag has ", count, " values");
     std::vector<std::size_t> values(count);
     for (std::size_t i = 0; i < count; ++i) values[i] = number(at + i * size, size);

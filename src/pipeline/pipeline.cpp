@@ -11,6 +11,7 @@
 #include "core/require_size.hpp"
 #include "core/scratch.hpp"
 #include "pipeline/host_stages.hpp"
+#include "pipeline/row_correction.hpp"
 #include "road/rig_prior.hpp"
 #include "road/road_assessment.hpp"
 #include "road/row_shift.hpp"
@@ -43,29 +44,6 @@ class StageTimer {
   double& ms_;
   Clock::time_point begin_ = Clock::now();
 };
-
-constexpr double min_correction_px = 0.05;  // interpolation between rows blurs: less is not worth it
-
-/// Road with which the rows are measured.
-enum class Rows { of_new_road, of_tracked_road };
-
-/// The misalignment that makes the offsets of the rows.
-Misalignment misalignment_of(const RowOffset& rows, int width, int height,
-                             const std::optional<StereoCalibration>& calibration) {
-  const double cx = calibration ? calibration->cx_px + calibration->disparity_offset_px : 0.5 * (width - 1);
-  const double cy = calibration ? calibration->cy_px : 0.5 * (height - 1);
-  return {rows.at(cx, cy), rows.per_column, rows.per_row, cx, cy};
-}
-
-/// Whether the misalignments differ by more than the error of `rows`, from which the first one was derived.
-bool differ(const Misalignment& measured, const RowAlignment& rows, const Misalignment& last, int width, int height) {
-  constexpr double min_std_errors = 5;
-  const Misalignment& centre = measured.is_zero() ? last : measured;  // without a correction it has none
-  const Misalignment change{measured.rows_px - last.rows_px, measured.turn_rad - last.turn_rad,
-                            measured.row_scale - last.row_scale, centre.cx_px, centre.cy_px};
-  const double std_error = rows.fit_sigma_px / std::sqrt(rows.points);
-  return change.largest_px(width, height) > std::max(min_correction_px, min_std_errors * std_error);
-}
 
 std::unique_ptr<FrameStages> make_stages(const std::string& engine, const PipelineOptions& options,
                                          const std::optional<StereoCalibration>& calibration) {
@@ -104,7 +82,6 @@ struct Pipeline::State {
   GreyPair align_on_host(const GreyPair& pair);
   void estimate_road_model(const GreyPair& pair);
   void track_in_noise(const GreyPair& pair);
-  bool rows_are_due() const;
   void measure_rows(const GreyPair& grey, Rows of);
   MatchInput transform_perspective(const GreyPair& pair);
   CoarseSearchOptions coarse_options(int factor, int block_radius) const;
@@ -139,7 +116,11 @@ void Pipeline::State::begin_frame(const FrameView& left, const FrameView& right)
   require_mask_size({mask.width(), mask.height()}, {width, height});
   if (calibration) calibration->validate(width, height, "calibration");
   if (options.rig_bias) options.rig_bias->require_rig(width, height, calibration);
-  if (carried.width != width || carried.height != height) carried = {};
+  if (carried.width != width || carried.height != height) {
+    carried = {};
+    carried.width = width;
+    carried.height = height;
+  }
 }
 
 GreyPair Pipeline::State::convert_to_grey(const FrameView& left, const FrameView& right) {
@@ -173,7 +154,7 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   const RigPrior expected(options.road_model, calibration);
   result.rows = {};
   if (carried.road) {
-    if (rows_are_due()) measure_rows(stages->on_host(pair), Rows::of_tracked_road);
+    if (options.check_rows && rows_are_due(carried)) measure_rows(stages->on_host(pair), Rows::of_tracked_road);
     result.road = stages->verify_road_model(undo_misalignment(pair), *carried.road);
     if (!result.road.has_road()) track_in_noise(align_on_host(stages->on_host(pair)));
     if (result.road.has_road() && expected.disagreement(result.road.model).empty()) return;
@@ -211,44 +192,13 @@ void Pipeline::State::track_in_noise(const GreyPair& pair) {
   if (tracked.has_road()) result.road = tracked;
 }
 
-/// Whether the rows are to be measured although the road is tracked: a mount may creep, and if an earlier measurement
-/// failed, a better frame may succeed.
-bool Pipeline::State::rows_are_due() const {
-  constexpr int frames_while_known = 100, frames_while_unknown = 10;
-  return options.check_rows &&
-         carried.frames_since_rows >= (carried.rows_known ? frames_while_known : frames_while_unknown);
-}
-
-/// Measures the vertical offset of the pair, and stores it if it is to be corrected. The previous measurement is kept
-/// if this one fails, and on a tracked road also if this one does not differ from it significantly.
+/// Measures the vertical offset of the pair, once a frame: the road may have been lost after it.
 void Pipeline::State::measure_rows(const GreyPair& grey, Rows of) {
-  constexpr double max_offset_px = 0.5;
-  constexpr double max_spread_px = 1.0;
-  const bool is_measured = result.rows.points > 0;  // before the frame lost its tracked road
-  if (!is_measured) result.rows = measure_row_alignment(grey.left, grey.right, threads, mask);
-  carried.frames_since_rows = 0;
-  const RowAlignment& rows = result.rows;
-  if (!rows.known()) {
-    if (of == Rows::of_new_road) {
-      result.warnings.push_back(
-          "rows-unknown: the row alignment of the pair could not be measured: " +
-          (rows.points < RowAlignment::min_points
-               ? format_message(rows.points, " points are too few")
-               : format_message("the offsets of ", rows.points, " points scatter by ", rows.fit_sigma_px, " px")));
-    }
-    return;
-  }
-  Misalignment measured = misalignment_of(rows.fit, width, height, calibration);
-  const double largest = measured.largest_px(width, height);
-  if (!options.correct_rows || largest < min_correction_px || largest > Misalignment::max_px) measured = {};
-  if (of == Rows::of_new_road || !carried.rows_known || differ(measured, rows, carried.misalignment, width, height)) {
-    carried.misalignment = measured;
-  }
-  carried.rows_known = true;
-  if (!is_measured && (std::abs(rows.median_px) > max_offset_px || rows.sigma_px > max_spread_px)) {
-    result.warnings.push_back(format_message("rows-disagree: the rows of the pair are not aligned: vertical offset ",
-                                             rows.median_px, " px (median of ", rows.points, " points, spread ",
-                                             rows.sigma_px, " px); rectify the pair"));
+  if (result.rows.points == 0) result.rows = measure_row_alignment(grey.left, grey.right, threads, mask);
+  update_misalignment(result.rows, of, options.correct_rows, calibration, carried);
+  const std::string warning = row_warning(result.rows, of);
+  if (!warning.empty() && std::ranges::find(result.warnings, warning) == result.warnings.end()) {
+    result.warnings.push_back(warning);
   }
 }
 
@@ -459,8 +409,6 @@ void Pipeline::State::end_frame() {
   result.ms.total = ms_since(begin);
   result.mask = mask;
   result.rig_bias = options.rig_bias;
-  carried.width = width;
-  carried.height = height;
   if (options.check_rows) ++carried.frames_since_rows;
   carried.road.reset();
   if (result.road.has_road()) {

@@ -1,12 +1,13 @@
 #include <limits>
 
+#include "core/image_limits.hpp"
 #include "core/require_range.hpp"
 #include "roadstereo/pipeline.hpp"
 
 namespace roadstereo {
 
 void PipelineState::validate() const {
-  constexpr double max_disparity_px = 8192, full_turn_rad = 6.3;
+  constexpr double max_disparity_px = max_image_side, full_turn_rad = 6.3;
   if (road) {
     for (const int u : {0, width}) {
       for (const int v : {0, height}) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/image_limits.hpp"
 #include "core/parallel.hpp"
 #include "core/require_range.hpp"
 #include "road/rig_bias_field.hpp"
@@ -15,10 +16,9 @@ double RigBias::at(double u, double v) const {
 }
 
 void RigBias::validate() const {
-  constexpr int max_side_px = 8192;
   constexpr double max_coefficient_px = 1000;
-  require_range("rig_bias", "width", width, 1, max_side_px);
-  require_range("rig_bias", "height", height, 1, max_side_px);
+  require_range("rig_bias", "width", width, 1, max_image_side);
+  require_range("rig_bias", "height", height, 1, max_image_side);
   require_range("rig_bias", "focal_px", focal_px, 0.0, unlimited);
   if (order != 0) require_range("rig_bias", "order", order, 2, max_order);
   for (const double value : value_px)

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/image_limits.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/synth.hpp"
 #include "synth/camera.hpp"
@@ -168,8 +169,8 @@ void check_clearance(const Rig& rig, const Road& road) {
 }  // namespace
 
 void Rig::validate() const {
-  require_in_range("width", width, 32, 8192);
-  require_in_range("height", height, 32, 8192);
+  require_in_range("width", width, min_image_side, max_image_side);
+  require_in_range("height", height, min_image_side, max_image_side);
   require_in_range("focal_px", focal_px, 0.2 * width, 50.0 * width);
   require_in_range("baseline_m", baseline_m, 0.005, 10);
   require_in_range("camera_height_m", camera_height_m, 0.05, 500);
