@@ -18,6 +18,16 @@ inline constexpr int tried_planes = 300;
 /// Random points by which they are compared, 13 for each lane of a warp.
 inline constexpr int compared_points = 416;
 
+/// Whether a disparity can be of the road of which an estimate has another one there: off by no more than a fifth,
+/// which is a fifth of the camera's height, or by what an estimate in noise is. The rest, house fronts and trees, may
+/// be most of the map.
+ROADSTEREO_HD inline bool can_be_of_road(double disparity, double of_estimate) {
+  constexpr double max_height_share = 0.2, max_error_px = 4;
+  const double share_px = max_height_share * of_estimate;
+  const double reach_px = share_px > max_error_px ? share_px : max_error_px, off = disparity - of_estimate;
+  return off >= -reach_px && off <= reach_px;
+}
+
 /// Index, of `count` points, of the k-th that planes are compared by. It may be missing.
 ROADSTEREO_HD inline int compared_point(int k, int count) {
   return static_cast<int>(random_number(static_cast<std::uint64_t>(k), static_cast<std::uint64_t>(count)));

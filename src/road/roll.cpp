@@ -123,6 +123,21 @@ void sum_scores(std::span<const DisparityPoint> points, std::span<const double> 
   moments.vv = sums.vv();
 }
 
+/// Leaves only the points of the sample that can be of the road of which `prior` is an estimate, if any of those by
+/// which planes are compared can.
+void leave_out_scene(const DisparityPlane& prior, std::span<DisparityPoint> sample) {
+  const auto is_of_road = [&](const DisparityPoint& p) { return can_be_of_road(p.d, prior.disparity(p.u, p.v)); };
+  const auto count = static_cast<int>(sample.size());
+  bool any_of_road = false;
+  for (int k = 0; k < compared_points && !any_of_road; ++k) {
+    any_of_road = is_of_road(sample[static_cast<std::size_t>(compared_point(k, count))]);
+  }
+  if (!any_of_road) return;
+  for (DisparityPoint& point : sample) {
+    if (!is_of_road(point)) point.d = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
 FitMoments fit_moments(std::span<const DisparityPoint> points, std::span<const double> weights,
                        const DisparityPlane& plane, int width, int height) {
   FitMoments moments{};
@@ -138,8 +153,8 @@ FitMoments fit_moments(std::span<const DisparityPoint> points, std::span<const d
 }
 
 /// Plane, roll angle and iterations; without a fit the least-squares plane, and no weights. The fit starts from the
-/// least quantile of the `sample`, of which `points` are not missing.
-RollEstimate fit_robustly(std::span<const DisparityPoint> sample, std::span<const DisparityPoint> points,
+/// least quantile of the `sample`, of which `points` are not missing; it is changed.
+RollEstimate fit_robustly(std::span<DisparityPoint> sample, std::span<const DisparityPoint> points,
                           const std::optional<DisparityPlane>& prior, int max_iterations,
                           ScratchVector<double>& weights) {
   const PlaneSums sums = sum_points(points);
@@ -148,6 +163,7 @@ RollEstimate fit_robustly(std::span<const DisparityPoint> sample, std::span<cons
   if (!least_squares) fail_on_one_line();
   RollEstimate geometry;
   geometry.pixels = points.size();
+  if (prior) leave_out_scene(*prior, sample);
   const QuantilePlane start = least_quantile_plane(sample, prior.value_or(*least_squares));
   auto fit = fit_plane_irls(points, start.plane, start_scale_of(start.quantile_px), true, max_iterations);
   geometry.plane = fit ? fit->plane : *least_squares;
@@ -172,7 +188,7 @@ RollEstimate estimate_roll(ImageView<const float> disparity, Region region, cons
                            double initial_roll_rad, const RollOptions& options, int threads) {
   options.validate();
   if (!region.empty()) require_same_size("the region", map_size(region), "the disparity map", map_size(disparity));
-  const ScratchVector<DisparityPoint> sample = sample_map(disparity, region);
+  ScratchVector<DisparityPoint> sample = sample_map(disparity, region);
   auto points = scratch_vector<DisparityPoint>();
   points.reserve(sample.size());
   std::copy_if(sample.begin(), sample.end(), std::back_inserter(points),

@@ -248,6 +248,23 @@ TEST(RoadGeometry, PavementDoesNotTiltRoad) {
   }
 }
 
+/// Road on a sixth of the picture below a house front, as of a camera that looks up.
+TEST(RoadGeometry, HouseFrontIsNoRoad) {
+  constexpr int horizon = 120, first_road_row = 150;
+  constexpr double front_px = 12, per_row = 0.4;
+  Image<float> map(320, 180);
+  for (int v = 0; v < map.height(); ++v) {
+    for (int u = 0; u < map.width(); ++u) {
+      const double exact = v < first_road_row ? front_px : per_row * (v - horizon);
+      map(u, v) = static_cast<float>(exact + 0.2 * (test::lattice(u, v, 24) - 0.5));
+    }
+  }
+  const RollEstimate g = estimate_roll(map, {}, DisparityPlane{-per_row * horizon + 0.4, per_row, 0.001}, 0, {});
+  for (const int u : {0, 319}) {
+    for (const int v : {first_road_row, 179}) EXPECT_NEAR(g.plane.disparity(u, v), per_row * (v - horizon), 0.03);
+  }
+}
+
 /// The plane of a wavy road lies among the waves, lower than their middle, where the quantile is least.
 TEST(RoadGeometry, WavyRoadHasPlaneBetweenTroughsAndCrests) {
   constexpr double amplitude = 0.3, noise = 0.05;

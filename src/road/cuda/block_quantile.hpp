@@ -19,27 +19,23 @@ inline constexpr int quantile_scratch = warp_lanes + 1;
 /// The search in the block that runs. A warp compares a plane at a time, its lanes a part of the points each.
 class BlockQuantile {
  public:
-  __device__ explicit BlockQuantile(const DevicePoints& points) : points_(points) {
-    int found = 0;
-    ROADSTEREO_UNROLL
-    for (int k = 0; k < own_points; ++k) {
-      const int i = compared_point(lane() + k * warp_lanes, points.count);
-      u_[k] = points.u[i];
-      v_[k] = points.v[i];
-      d_[k] = points.d[i];
-      found += d_[k] == d_[k] ? 1 : 0;
-    }
-    found_ = sum_of_warp(found);
+  /// Of the points, those count that can be of the road of which `start` is an estimate, if any that planes are
+  /// compared by can.
+  __device__ BlockQuantile(const DevicePoints& points, const DisparityPlane& start) : points_(points), start_(start) {
+    load();
+    if (found_ > 0) return;
+    all_count_ = true;
+    load();
   }
 
   /// All threads get the result.
-  __device__ QuantilePlane run(const DisparityPlane& start, std::uint64_t* scratch) const {
-    if (found_ == 0) return {start, 0};
+  __device__ QuantilePlane run(std::uint64_t* scratch) const {
+    if (found_ == 0) return {start_, 0};
     const int warp = static_cast<int>(threadIdx.x) / warp_lanes, warps = static_cast<int>(blockDim.x) / warp_lanes;
     float quantile = magnitude_of(largest_bits);
     int best = 0;
     for (int k = warp; k <= tried_planes; k += warps) {
-      DisparityPlane plane = start;
+      DisparityPlane plane = start_;
       if (k > 0 && !through_corners(k - 1, plane)) continue;
       float residuals[own_points];
       const int wanted = measure(plane, residuals);
@@ -49,7 +45,7 @@ class BlockQuantile {
     }
     const std::uint64_t key = static_cast<std::uint64_t>(bits_of(quantile)) << 32U | static_cast<unsigned>(best);
     const std::uint64_t least = block_best(key, Least{}, scratch);
-    QuantilePlane result{start, magnitude_of(static_cast<std::uint32_t>(least >> 32U))};
+    QuantilePlane result{start_, magnitude_of(static_cast<std::uint32_t>(least >> 32U))};
     const auto of_plane = static_cast<int>(least & 0xFFFFFFFFU);
     if (of_plane > 0) through_corners(of_plane - 1, result.plane);
     return result;
@@ -72,11 +68,30 @@ class BlockQuantile {
     return value;
   }
 
+  __device__ bool counts(int i) const {
+    const float d = points_.d[i];
+    return all_count_ ? d == d : can_be_of_road(d, start_.disparity(points_.u[i], points_.v[i]));
+  }
+
+  __device__ void load() {
+    int found = 0;
+    ROADSTEREO_UNROLL
+    for (int k = 0; k < own_points; ++k) {
+      const int i = compared_point(lane() + k * warp_lanes, points_.count);
+      const bool is_found = counts(i);
+      u_[k] = points_.u[i];
+      v_[k] = points_.v[i];
+      d_[k] = is_found ? points_.d[i] : nanf("");
+      found += is_found ? 1 : 0;
+    }
+    found_ = sum_of_warp(found);
+  }
+
   __device__ bool through_corners(int k, DisparityPlane& plane) const {
     double corners[3][3];
     for (int corner = 0; corner < 3; ++corner) {
       const int i = corner_point(k, corner, points_.count);
-      if (points_.d[i] != points_.d[i]) return false;
+      if (!counts(i)) return false;
       corners[corner][0] = points_.u[i];
       corners[corner][1] = points_.v[i];
       corners[corner][2] = points_.d[i];
@@ -114,7 +129,9 @@ class BlockQuantile {
   }
 
   const DevicePoints& points_;
-  int found_;
+  DisparityPlane start_;
+  bool all_count_ = false;
+  int found_ = 0;
   float u_[own_points], v_[own_points], d_[own_points];
 };
 

@@ -241,7 +241,7 @@ __global__ void __launch_bounds__(max_fit_threads)
     __syncthreads();  // other threads have written a part of the sample
     const DevicePoints points{sampled.u, sampled.v, sampled.d, sampled.sample.count()};
     static_assert(sizeof state.scratch >= quantile_scratch * sizeof(std::uint64_t));
-    const QuantilePlane nearest = BlockQuantile(points).run(start, reinterpret_cast<std::uint64_t*>(state.scratch));
+    const QuantilePlane nearest = BlockQuantile(points, start).run(reinterpret_cast<std::uint64_t*>(state.scratch));
     const RobustFit fit{start_scale_of(nearest.quantile_px), true, max_iterations};
     RegisterSelect select(state.select);
     own.fit = BlockFit(points, fit, state, select).run(nearest.plane, sampled.weights);
