@@ -97,10 +97,10 @@ std::string severity_text(const DamageMetrics& metrics);
 
 /// Evidence that distinguishes a damage from noise and from objects beside the road. No single value decides.
 struct DamageEvidence {
-  /// Median depth inside minus that of the surrounding band, in robust standard deviations of the band, or of the road
-  /// around (a band three times as wide, at most those of all intact road) if these are larger
+  /// Depth of the floor minus the median of the surrounding band, or of that half of it where the contrast is least, in
+  /// robust standard deviations there, or of the road around (three bands, or all intact road) if these are larger
   double contrast_sigmas = 0;
-  double significance = 0;  ///< contrast times the root of the number of independent samples: support windows inside
+  double significance = 0;  ///< times the root of the support windows inside, a cell by its share of the floor squared
   double steepness = 0;     ///< maximum of the mean slope on a contour, relative to a cone of the same area and depth
   double road_share = 0;    ///< share of the band around that is road, 0 … 1
   double border_share = 0;  ///< share of the outline on the border of what both cameras see, 0 … 1

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
+#include "core/binned_selection.hpp"
 #include "damage/contours.hpp"
 #include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
@@ -74,6 +76,34 @@ double road_share(const SearchInput& input, const Candidate& candidate, float de
   return cells == 0 ? 1 : on_road / cells;
 }
 
+/// Contrast of a depth to the surroundings, in standard deviations: to the band around a region, or to the half of the
+/// band where it is least. A part of a verge is no rougher than the rest of it, which may be less than half of the
+/// band.
+double least_contrast(double depth, const RobustNormal& around, const HalvesAround& halves, double noise) {
+  constexpr std::size_t min_samples = 12, min_share = 4;  // of half of the band: less is not seen
+  const auto contrast_to = [&](const RobustNormal& band) {
+    return (depth - band.median) / std::max(band.sigma, noise);
+  };
+  double least = contrast_to(around);
+  for (const RobustNormal& half : halves) {
+    if (half.samples < min_samples || 2 * min_share * half.samples < around.samples) continue;
+    least = std::min(least, contrast_to(half));
+  }
+  return least;
+}
+
+/// Number of cells, each counted by the square of its share of the depth of the floor, as by a matched filter: the
+/// smeared rim of a narrow hole says little of it.
+double floor_cells(std::span<const float> depths, double around, double floor) {
+  if (floor <= around) return 0;
+  double cells = 0;
+  for (const float depth : depths) {
+    const double share = std::clamp((double{depth} - around) / (floor - around), 0.0, 1.0);
+    cells += share * share;
+  }
+  return cells;
+}
+
 /// Significance of the rut that a region lies in, times the share of its cells that do.
 double rut_significance(const BoxMask& region, std::size_t size, const Ruts& ruts) {
   if (ruts.empty()) return 0;
@@ -110,19 +140,20 @@ void add_evidence(const SearchInput& input, SearchImages& images, Candidate& can
   constexpr int near_cells = 3;  // closer to the rim the depth is smoothed
   constexpr double band_radii = 1, wide_band_radii = 3;
   constexpr double min_noise_px = 1e-6;  // of maps without noise
-  std::vector<float> inside = depths_inside(images, candidate);
-  const RobustNormal damage = robust_normal(inside);
+  const std::vector<float> inside = depths_inside(images, candidate);
   const RobustNormal around = depths_around(images.field(), candidate.cells, near_cells, band_radii);
   // In the distance, on gravel or in the shade the road may be noisier than here.
   const RobustNormal wide = depths_around(images.field(), candidate.cells, near_cells, wide_band_radii);
   const bool is_known = wide.samples >= candidate.size;
   const double of_road = input.depth_cells.noise, noise = is_known ? std::min(of_road, wide.sigma) : of_road;
-  const double window = input.image_edges.window_radius;
-  const double samples = std::max(1.0, static_cast<double>(candidate.size) / (std::numbers::pi * window * window));
+  const double window = input.image_edges.window_radius, floor = floor_of(inside);
+  const double samples = floor_cells(inside, around.median, floor) / (std::numbers::pi * window * window);
   DamageEvidence& evidence = candidate.evidence;
-  evidence.contrast_sigmas = (damage.median - around.median) / std::max({around.sigma, noise, min_noise_px});
-  evidence.significance = evidence.contrast_sigmas * std::sqrt(samples);
-  evidence.road_share = road_share(input, candidate, static_cast<float>(damage.median), images);
+  evidence.contrast_sigmas =
+      least_contrast(floor, around, halves_around(images.field(), candidate.cells, near_cells, band_radii),
+                     std::max(noise, min_noise_px));
+  evidence.significance = evidence.contrast_sigmas * std::sqrt(std::max(1.0, samples));
+  evidence.road_share = road_share(input, candidate, binned_median(inside), images);
   measure_border(candidate.cells, input.view, input.gaps.unseen, evidence);
   if (candidate.kind == DamageKind::depression) {
     evidence.rut_significance = rut_significance(candidate.cells, candidate.size, input.ruts);

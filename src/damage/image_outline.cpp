@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <vector>
 
 #include "damage/connected_components.hpp"
 #include "damage/contours.hpp"
 #include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
+#include "damage/octants.hpp"
 #include "damage/robust_normal.hpp"
 
 namespace roadstereo {
@@ -33,26 +33,6 @@ RobustNormal tone_of(const BoxMap& grey, const BoxMask& mask) {
   }
   return robust_normal(values);
 }
-
-/// Octants around the middle of a box, of the box's proportions.
-class Octants {
- public:
-  static constexpr std::size_t count = 8;
-
-  explicit Octants(const CellBox& box)
-      : middle_i_(box.first_column + box.last_column),
-        middle_j_(box.first_row + box.last_row),
-        columns_(box.columns()),
-        rows_(box.rows()) {}
-
-  std::size_t of(int i, int j) const {
-    const int x = (2 * i - middle_i_) * rows_, y = (2 * j - middle_j_) * columns_;
-    return (x > 0 ? 1U : 0U) + (y > 0 ? 2U : 0U) + (std::abs(x) > std::abs(y) ? 4U : 0U);
-  }
-
- private:
-  int middle_i_, middle_j_, columns_, rows_;
-};
 
 /// The road around a region: all of it, and that in each octant, since shadows, paint and patches end there.
 struct RoadTones {

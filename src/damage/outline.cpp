@@ -25,21 +25,26 @@ CellBox search_box(const DepthField& field, const ConnectedComponent& seeds) {
   return seeds.box.grown(size + 16, field.depth.width(), field.depth.height());
 }
 
-/// Depths of the allowed cells between two distances from a region.
-std::vector<float> depths_between(const DepthField& field, const BoxMask& region, int near, int far) {
+/// Calls add(i, j, depth) for the allowed cells between two distances from a region.
+template <class Add>
+void visit_between(const DepthField& field, const BoxMask& region, int near, int far, const Add& add) {
   const CellBox around = region.box().grown(far, field.depth.width(), field.depth.height());
   const BoxMask inner = dilate(region, near, around);
   const BoxMask outer = dilate(region, far, around);
-  std::vector<float> depths;
   for (int j = around.first_row; j <= around.last_row; ++j) {
     const std::uint8_t* const is_inner = inner.cells().row(j - around.first_row);
     const std::uint8_t* const is_outer = outer.cells().row(j - around.first_row);
     const float* const depth = field.depth.row(j) + around.first_column;
     const std::uint8_t* const allowed = field.allowed.row(j) + around.first_column;
     for (int i = 0; i < around.columns(); ++i) {
-      if ((is_outer[i] & ~is_inner[i] & allowed[i]) != 0) depths.push_back(depth[i]);
+      if ((is_outer[i] & ~is_inner[i] & allowed[i]) != 0) add(around.first_column + i, j, depth[i]);
     }
   }
+}
+
+std::vector<float> depths_between(const DepthField& field, const BoxMask& region, int near, int far) {
+  std::vector<float> depths;
+  visit_between(field, region, near, far, [&](int, int, float depth) { depths.push_back(depth); });
   return depths;
 }
 
@@ -106,14 +111,36 @@ BoxMask near_gaps(const Image<std::uint8_t>& valid, const CellBox& box, int wind
   return near;
 }
 
+/// Far side of the band of depths_around(), cells from the region.
+int far_side(const BoxMask& region, int near_cells, double band_radii) {
+  constexpr int min_band_cells = 3;
+  const double radius = std::sqrt(static_cast<double>(cell_count(region)) / std::numbers::pi);
+  return near_cells + std::max(min_band_cells, static_cast<int>(band_radii * radius));
+}
+
 }  // namespace
 
 RobustNormal depths_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii) {
-  constexpr int min_band_cells = 3;
-  const double radius = std::sqrt(static_cast<double>(cell_count(region)) / std::numbers::pi);
-  const int far_cells = near_cells + std::max(min_band_cells, static_cast<int>(band_radii * radius));
-  std::vector<float> around = depths_between(field, region, near_cells, far_cells);
+  std::vector<float> around = depths_between(field, region, near_cells, far_side(region, near_cells, band_radii));
   return robust_normal(around);
+}
+
+HalvesAround halves_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii) {
+  const Octants octants(region.box());
+  std::array<std::vector<float>, Octants::count> depths;
+  visit_between(field, region, near_cells, far_side(region, near_cells, band_radii),
+                [&](int i, int j, float depth) { depths[octants.of(i, j)].push_back(depth); });
+  HalvesAround halves;
+  std::vector<float> half;
+  for (std::size_t first = 0; first < Octants::count; ++first) {
+    half.clear();
+    for (std::size_t k = first; k < first + Octants::count / 2; ++k) {
+      const std::vector<float>& octant = depths[k % Octants::count];
+      half.insert(half.end(), octant.begin(), octant.end());
+    }
+    halves[first] = robust_normal(half);
+  }
+  return halves;
 }
 
 float floor_of(std::vector<float> depths) {

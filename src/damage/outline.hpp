@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
+
 #include "damage/box_mask.hpp"
 #include "damage/connected_components.hpp"
+#include "damage/octants.hpp"
 #include "damage/robust_normal.hpp"
 
 namespace roadstereo {
@@ -19,6 +22,10 @@ BoxMask flood_fill(const DepthField& field, const ConnectedComponent& seeds, flo
 /// Distribution of the depths of the allowed cells in a band around a region: farther than `near_cells`, as wide as
 /// `band_radii` times the radius √(area / π) of the region, at least 3 cells.
 RobustNormal depths_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii);
+
+/// The same for the halves of the band, each of four octants around the region.
+using HalvesAround = std::array<RobustNormal, Octants::count>;
+HalvesAround halves_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii);
 
 /// Depth of the floor of a hollow: 75th percentile of those depths that are deeper than half of it, robust against
 /// single outliers and independent of how much of the hollow they cover.
