@@ -31,6 +31,8 @@ struct PairHealth {
   double row_scale = unknown;         ///< relative size of the right view minus 1
   double row_turn_rad = unknown;      ///< of the right view about the optical axis
   double row_error_px = unknown;      ///< vertical offset not undone, 90th percentile of the points
+  double row_scatter_px = unknown;    ///< robust standard deviation of the points around all that a rigid rig shows;
+                                      ///< above 1 px unknown where neighbours contradict each other, too
   double distortion_right = unknown;  ///< k of 1 + k r² left in the right view alone
   double distortion_both = unknown;   ///< k of 1 + k r² left in both views
   double bowl_px = unknown;  ///< largest disparity error on the road that the distortion causes and a quadratic road
@@ -47,9 +49,10 @@ struct PairHealth {
   double clipped_right = unknown;  ///< the same
   double blur_left_px = unknown;   ///< standard deviation of a Gaussian blur
   double blur_right_px = unknown;
-  double noise_share = unknown;  ///< share of white noise, which the views do not have in common, in the variance of
-                                 ///< blocks of 7×7 pixels
-  double blocks_left = unknown;  ///< excess of the steps between 8×8 blocks (JPEG) over other steps, relative
+  double noise_share = unknown;   ///< share of white noise, which the views do not have in common, in the variance of
+                                  ///< blocks of 7×7 pixels
+  double stripe_share = unknown;  ///< share of the noise of whole columns and rows in it
+  double blocks_left = unknown;   ///< excess of the steps between 8×8 blocks (JPEG) over other steps, relative
   double blocks_right = unknown;
 
   double infinity_px = unknown;  ///< smallest disparity + doffs above the horizon (10th percentile)

@@ -57,6 +57,8 @@ void measure_rectification(const FrameResult& frame, const DamageMap& damage,
   const std::vector<RowSample> samples = sample_row_alignment(frame.grey, frame.right, threads, frame.mask);
   const auto fit = fit_rectification_error(samples, frame.grey.width(), frame.grey.height(), calibration);
   if (!fit) return;
+  if (fit->is_known() || neighbours_agree(samples)) health.row_scatter_px = fit->scatter_px;
+  if (!fit->is_known()) return;
   const auto& [offset, scale, turn, right, both] = fit->value;
   health.row_offset_px = fit->focal_px * offset;
   const Misalignment& undone = frame.shift.misalignment;

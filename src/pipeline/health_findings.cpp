@@ -42,6 +42,11 @@ void add_rectification(const PairHealth& h, Findings& findings) {
                      max_row_error_px, " px): the right view is ", rounded(100 * h.row_scale, 0.01),
                      " % larger, turned by ", rounded(to_degrees(h.row_turn_rad), 0.01), "° and lies ",
                      rounded(h.row_offset_px, 0.01), " px lower; recalibrate the rig");
+  constexpr double max_scatter_px = RowAlignment::max_fit_sigma_px;
+  findings.add_above("row-scatter", h.row_scatter_px, max_scatter_px, "px", true, "the rows of the pair scatter by ",
+                     rounded(h.row_scatter_px, 0.01), " px around those of a rigid rig (limit ", max_scatter_px,
+                     " px), and neighbours agree: the cameras do not expose at the same moment, or the rig bends; "
+                     "synchronise the cameras");
   findings.add_above("distortion", h.bowl_px, h.noise_px, "px", h.bowl_px > h.threshold_sigma * h.noise_px,
                      "residual lens distortion (k = ", rounded(h.distortion_right, 1e-4), " in the right view, ",
                      rounded(h.distortion_both, 1e-4), " in both): it bends the road by up to ",
@@ -84,9 +89,13 @@ void add_pictures(const PairHealth& h, Findings& findings) {
                      " times as blurred as the other (", rounded(h.blur_left_px, 0.1), " px left, ",
                      rounded(h.blur_right_px, 0.1), " px right; limit ", max_blur_ratio, "); focus, clean the lens");
   constexpr double max_noise = 0.25;  // a third of the texture: blocks that match correlate by three quarters at best
-  findings.add_above("noise", h.noise_share, max_noise, "", false, rounded(100 * h.noise_share, 1),
-                     " % of the variance of the road's grey levels are noise (limit ", rounded(100 * max_noise, 1),
-                     " %): damage may be missed; add light, or expose for longer with less gain");
+  const double stripes = std::isnan(h.stripe_share) ? 0 : h.stripe_share, noise = h.noise_share + stripes;
+  const char* const advice = stripes > h.noise_share ? "subtract a dark frame, add light, or expose with less gain"
+                                                     : "add light, or expose for longer with less gain";
+  findings.add_above("noise", noise, max_noise, "", false, rounded(100 * noise, 1),
+                     " % of the variance of the road's grey levels are noise, ", rounded(100 * stripes, 1),
+                     " % that of whole columns or rows (limit ", rounded(100 * max_noise, 1),
+                     " %): damage may be missed; ", advice);
   constexpr double max_blocks = 0.1;
   constexpr double max_trusted_blocks = 1;  // the grid of the blocks is as strong as the texture: it is matched
   const double blocks = std::fmax(h.blocks_left, h.blocks_right);

@@ -7,8 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "core/block_grid.hpp"
 #include "core/deblocking.hpp"
 #include "core/order_statistics.hpp"
+#include "pipeline/stripe_noise.hpp"
 
 namespace roadstereo {
 namespace {
@@ -185,9 +187,10 @@ double block_variance(Grey image, int at_u, int at_v) {
   return (squares - static_cast<double>(sum) * sum / pixels) / (pixels - 1);
 }
 
-/// Variance of the white noise of a view by the median variance of blocks of the road. Noise is what the mask responds
-/// to differently in both views, where matches are nearly whole pixels: fine texture is the same in both.
-double noise_share(const FrameResult& frame, const DamageMap& damage) {
+/// Variances of the white noise of a view and of that of its columns and rows, by the median variance of blocks of the
+/// road. White noise is what the mask responds to differently in both views, where matches are nearly whole pixels:
+/// fine texture is the same in both. To a column or a row the mask does not respond.
+void measure_noise(const FrameResult& frame, const DamageMap& damage, PairHealth& health) {
   constexpr double mask_norm = 6, max_fraction_px = 0.25;
   constexpr std::size_t min_blocks = 100;
   std::vector<float> differences, variances;
@@ -198,15 +201,21 @@ double noise_share(const FrameResult& frame, const DamageMap& damage) {
         static_cast<float>(noise_mask(frame.grey, u, v) - noise_mask(frame.right, match->u, match->v)));
     variances.push_back(static_cast<float>(block_variance(frame.grey, u, v)));
   });
-  if (variances.size() < min_blocks) return PairHealth::unknown;
+  if (variances.size() < min_blocks) return;
   const double noise = gaussian_mad * upper_median_magnitude(differences) / mask_norm;
   const double variance = upper_median(variances);
-  return variance > 0 ? 0.5 * noise * noise / variance : PairHealth::unknown;
+  if (variance <= 0) return;
+  health.noise_share = 0.5 * noise * noise / variance;
+  constexpr double in_block = 0.875;  // 6/7 · 49/48: a block of 7×7 pixels has 7 stripes
+  const double stripes = stripe_variance(frame.grey, damage.road) + stripe_variance(frame.right, damage.road);
+  health.stripe_share = std::isnan(stripes) ? PairHealth::unknown : std::min(1.0, 0.5 * in_block * stripes / variance);
 }
 
-/// FrameResult::block_steps, or of the image as it is.
+/// FrameResult::block_steps, or of the image as it is; of blocks that begin elsewhere where those show nothing.
 double block_steps(double measured, Grey image) {
-  return std::isnan(measured) ? measure_block_steps(image).excess() : measured;
+  constexpr double min_excess = 0.05;  // from there on the steps may be smoothed (`deblocking_strength`)
+  const double excess = std::isnan(measured) ? measure_block_steps(image).excess() : measured;
+  return excess < min_excess ? std::max(excess, block_grid_excess(image)) : excess;
 }
 
 }  // namespace
@@ -215,7 +224,7 @@ void measure_pictures(const FrameResult& frame, const DamageMap& damage, PairHea
   measure_exposure(frame, damage, health);
   health.blur_left_px = blur_of(frame.grey, damage);
   health.blur_right_px = blur_of(frame.right, damage);
-  health.noise_share = noise_share(frame, damage);
+  measure_noise(frame, damage, health);
   health.blocks_left = block_steps(frame.block_steps[0], frame.grey);
   health.blocks_right = block_steps(frame.block_steps[1], frame.right);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/order_statistics.hpp"
 #include "core/tukey.hpp"
@@ -113,9 +114,25 @@ std::optional<RectificationError> fit_rectification_error(const std::vector<RowS
           sample.dv / fit.focal_px - predict(fit.value, ViewPoint(fit, sample.u, sample.v, -sample.du).row_terms());
     }
   }
-  // Points that contradict each other tell nothing.
-  const double sigma_px = fit.focal_px * gaussian_mad * upper_median_magnitude(residuals);
-  return sigma_px <= RowAlignment::max_fit_sigma_px ? std::optional(fit) : std::nullopt;
+  fit.scatter_px = fit.focal_px * gaussian_mad * upper_median_magnitude(residuals);
+  return fit;
+}
+
+bool neighbours_agree(const std::vector<RowSample>& samples) {
+  std::vector<double> of_neighbours, of_any;
+  for (const RowSample& sample : samples) {
+    double nearest = std::numeric_limits<double>::infinity(), difference = 0;
+    for (const RowSample& other : samples) {
+      if (&other == &sample) continue;
+      const double distance = std::hypot(other.u - sample.u, other.v - sample.v);
+      of_any.push_back(other.dv - sample.dv);
+      if (distance >= nearest) continue;
+      nearest = distance;
+      difference = other.dv - sample.dv;
+    }
+    of_neighbours.push_back(difference);
+  }
+  return !of_any.empty() && upper_median_magnitude(of_neighbours) < 0.5 * upper_median_magnitude(of_any);
 }
 
 }  // namespace roadstereo

@@ -18,7 +18,10 @@ struct RectificationError {
   double focal_px = 1, cx_px = 0, cy_px = 0, right_cx_px = 0;
   Vector<terms> value{};      ///< offset, scale, turn, k_right, k_both
   Vector<terms> std_error{};  ///< of each
+  double scatter_px = 0;      ///< of the points around it, robust standard deviation
 
+  /// Whether the points agree, by `RowAlignment::max_fit_sigma_px`: else they tell nothing of the rectification.
+  bool is_known() const { return scatter_px <= RowAlignment::max_fit_sigma_px; }
   /// Whether the term differs from 0 by five standard errors.
   bool is_significant(std::size_t term) const;
   /// Whether one of the distortions does.
@@ -33,5 +36,10 @@ struct RectificationError {
 /// a calibration the focal length is the image's width and the principal point its centre.
 std::optional<RectificationError> fit_rectification_error(const std::vector<RowSample>& samples, int width, int height,
                                                           const std::optional<StereoCalibration>& calibration);
+
+/// Whether vertical offsets of points change with their place: those of nearest neighbours differ by less than half of
+/// what those of any two do (medians). A scene seen from two moments does so, chance matches on texture that repeats,
+/// or in noise, do not.
+bool neighbours_agree(const std::vector<RowSample>& samples);
 
 }  // namespace roadstereo

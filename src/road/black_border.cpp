@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "road/repeated_border.hpp"
 #include "roadstereo/grey_scale.hpp"
 
 namespace roadstereo {
@@ -79,6 +80,15 @@ std::size_t mark_border(ImageView<const std::int16_t> grey, std::int16_t black, 
   return marked;
 }
 
+void mark_repeated(const RepeatedBorder& border, ImageView<std::uint8_t> outside) {
+  for (int v = 0; v < outside.height(); ++v) {
+    std::uint8_t* const row = outside.row(v);
+    const bool is_border = v < border.top || v >= outside.height() - border.bottom;
+    std::fill_n(row, is_border ? outside.width() : border.left, std::uint8_t{255});
+    std::fill_n(row + outside.width() - border.right, border.right, std::uint8_t{255});
+  }
+}
+
 }  // namespace
 
 PictureMask::PictureMask(ImageView<const std::int16_t> grey, ImageView<const std::uint8_t> mask)
@@ -86,11 +96,17 @@ PictureMask::PictureMask(ImageView<const std::int16_t> grey, ImageView<const std
   if (grey.empty()) return;
   constexpr std::size_t noteworthy = 500;  // one in so many pixels
   const std::int16_t black = black_level(grey);
-  if (!has_black_sides(grey, black)) return;
+  const bool has_black = has_black_sides(grey, black);
+  const RepeatedBorder repeated = find_repeated_border(grey);
+  if (!has_black && repeated.empty()) return;
   const int width = grey.width(), height = grey.height();
   outside_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
   const ImageView<std::uint8_t> outside(outside_.data(), width, height, width);
-  if (mark_border(grey, black, outside) * noteworthy < outside_.size()) return;
+  if (has_black && mark_border(grey, black, outside) * noteworthy < outside_.size()) {
+    if (repeated.empty()) return;
+    std::fill(outside_.begin(), outside_.end(), std::uint8_t{0});
+  }
+  mark_repeated(repeated, outside);
   for (int v = 0; v < height && !mask.empty(); ++v) {
     std::transform(mask.row(v), mask.row(v) + width, outside.row(v), outside.row(v),
                    [](std::uint8_t masked, std::uint8_t here) { return masked != 0 ? std::uint8_t{255} : here; });

@@ -12,6 +12,7 @@
 
 #include "pipeline/picture_health.hpp"
 #include "pipeline/rectification_error.hpp"
+#include "pipeline/stripe_noise.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/health.hpp"
 #include "tests/damage/damage_scene.hpp"
@@ -70,9 +71,25 @@ TEST(RectificationError, FindsNothingInNoise) {
   std::vector<RowSample> repeated;
   repeated.reserve(100);
   for (int k = 0; k < 100; ++k) repeated.push_back({k * 6.0, (k * 37) % 360 * 1.0, -20, 8.0 * (k % 5 - 2)});
-  EXPECT_FALSE(fit_rectification_error(repeated, 640, 360, std::nullopt).has_value());
+  EXPECT_FALSE(fit_rectification_error(repeated, 640, 360, std::nullopt)->is_known());
+  EXPECT_FALSE(neighbours_agree(repeated));
   for (RowSample& sample : repeated) sample.dv /= 80;
-  EXPECT_TRUE(fit_rectification_error(repeated, 640, 360, std::nullopt).has_value());
+  EXPECT_TRUE(fit_rectification_error(repeated, 640, 360, std::nullopt)->is_known());
+}
+
+// A right camera that exposes after a way of a metre forwards: what is at depth z moves down by y / z of a metre. Left
+// of the road stand walls, half as far as the road.
+TEST(RectificationError, RowsOfAnotherMomentScatterAndNeighboursAgree) {
+  std::vector<RowSample> samples = samples_of([](double, double, double) { return 0; });
+  for (RowSample& sample : samples) {
+    const double y = (sample.v - 179.5) / 350, depth_m = (sample.u < 300 ? 0.5 : 1) * 42 / -sample.du;
+    sample.dv += 350 * y / depth_m;
+  }
+  EXPECT_FALSE(fit_of(samples).is_known());
+  EXPECT_TRUE(neighbours_agree(samples));
+  std::vector<RowSample> shuffled = samples;
+  for (std::size_t k = 0; k < samples.size(); ++k) shuffled[k].dv = samples[k * 47 % samples.size()].dv;
+  EXPECT_FALSE(neighbours_agree(shuffled));
 }
 
 /// The exact maps of the damaged scene as a frame.
@@ -233,6 +250,36 @@ TEST(MeasureHealth, NoiseIsShareOfVariance) {
   EXPECT_TRUE(much.depth_is_trusted());
 }
 
+// Every column, or row, of either sensor has its own offset of 2 grey levels, standard deviation.
+TEST(MeasureHealth, NoiseOfColumnsAndRowsIsShareOfVariance) {
+  const double none = ExactFrame().health().stripe_share;
+  EXPECT_LT(none, 0.02);
+  for (const bool of_columns : {true, false}) {
+    const auto striped = [of_columns](double sigma) {
+      return ExactFrame([=](Frame& left, Frame& right) {
+        std::mt19937 random(5);
+        std::normal_distribution<double> noise(0, sigma);
+        for (Frame* const frame : {&left, &right}) {
+          std::vector<double> offsets(static_cast<std::size_t>(of_columns ? frame->width : frame->height));
+          std::generate(offsets.begin(), offsets.end(), [&] { return noise(random); });
+          for (std::size_t k = 0; k < frame->bytes.size(); ++k) {
+            const auto width = static_cast<std::size_t>(frame->width);
+            const double level = frame->bytes[k] + offsets[of_columns ? k % width : k / width];
+            frame->bytes[k] = static_cast<std::uint8_t>(std::clamp(std::lround(level), 0L, 255L));
+          }
+        }
+      });
+    };
+    const ExactFrame little = striped(2), much = striped(20);
+    // The variance of 360 numbers is known to 7 %. Levels are sixteenths.
+    EXPECT_NEAR(stripe_variance(little.frame.grey, little.damage.road), 4 * 256, 0.2 * 4 * 256) << of_columns;
+    EXPECT_GT(little.health().stripe_share, 2 * none) << of_columns;
+    EXPECT_EQ(little.found(), "") << of_columns;
+    EXPECT_GT(much.health().stripe_share, 0.5) << of_columns;
+    EXPECT_NE(much.found().find("noise"), std::string::npos) << of_columns;
+  }
+}
+
 // Rows that matching has undone are compared where they lie in the right view.
 TEST(MeasureHealth, RowOffsetIsNoNoise) {
   constexpr int rows = 2;
@@ -270,6 +317,17 @@ TEST(MeasureHealth, BlocksAreCompression) {
     quantise(right);
   });
   EXPECT_NE(blocks.found().find("compression"), std::string::npos);
+  // Cropped after its compression: the blocks begin three columns and five rows further.
+  const ExactFrame cropped([&](Frame& left, Frame& right) {
+    for (Frame* const frame : {&left, &right}) {
+      const std::ptrdiff_t shift = 5 * std::ptrdiff_t{frame->width} + 3;
+      std::rotate(frame->bytes.begin(), frame->bytes.begin() + shift, frame->bytes.end());
+      quantise(*frame);
+      std::rotate(frame->bytes.begin(), frame->bytes.end() - shift, frame->bytes.end());
+    }
+  });
+  EXPECT_NEAR(cropped.health().blocks_left, blocks.health().blocks_left, 0.1 * blocks.health().blocks_left);
+  EXPECT_NE(cropped.found().find("compression"), std::string::npos);
 }
 
 TEST(PairHealth, UnknownViewHidesNoFault) {
@@ -281,6 +339,26 @@ TEST(PairHealth, UnknownViewHidesNoFault) {
     EXPECT_EQ(health.findings()[0].id, "blur");
     EXPECT_EQ(health.findings()[1].id, "compression");
   }
+}
+
+TEST(PairHealth, RowsThatScatterSpoilDepth) {
+  PairHealth health;
+  health.row_scatter_px = 0.9;
+  EXPECT_TRUE(health.depth_is_trusted());
+  health.row_scatter_px = 1.1;
+  ASSERT_EQ(health.findings().size(), 1U);
+  EXPECT_EQ(health.findings()[0].id, "row-scatter");
+  EXPECT_FALSE(health.depth_is_trusted());
+}
+
+TEST(PairHealth, NoiseOfPixelsAndStripesAddUp) {
+  PairHealth health;
+  health.noise_share = 0.2;
+  EXPECT_TRUE(health.findings().empty());
+  health.stripe_share = 0.1;
+  ASSERT_EQ(health.findings().size(), 1U);
+  EXPECT_EQ(health.findings()[0].id, "noise");
+  EXPECT_NEAR(health.findings()[0].value, 0.3, 1e-12);
 }
 
 TEST(PairHealth, GridOfBlocksAsStrongAsTextureSpoilsDepth) {

@@ -12,25 +12,13 @@
 namespace roadstereo::cli {
 namespace {
 
-constexpr std::array numbers{&PairHealth::row_offset_px,
-                             &PairHealth::row_correction_px,
-                             &PairHealth::row_scale,
-                             &PairHealth::row_turn_rad,
-                             &PairHealth::row_error_px,
-                             &PairHealth::distortion_right,
-                             &PairHealth::distortion_both,
-                             &PairHealth::bowl_px,
-                             &PairHealth::noise_px,
-                             &PairHealth::wave_px,
-                             &PairHealth::gain,
-                             &PairHealth::clipped_left,
-                             &PairHealth::clipped_right,
-                             &PairHealth::blur_left_px,
-                             &PairHealth::blur_right_px,
-                             &PairHealth::noise_share,
-                             &PairHealth::blocks_left,
-                             &PairHealth::blocks_right,
-                             &PairHealth::infinity_px,
+constexpr std::array numbers{&PairHealth::row_offset_px,    &PairHealth::row_correction_px, &PairHealth::row_scale,
+                             &PairHealth::row_turn_rad,     &PairHealth::row_error_px,      &PairHealth::row_scatter_px,
+                             &PairHealth::distortion_right, &PairHealth::distortion_both,   &PairHealth::bowl_px,
+                             &PairHealth::noise_px,         &PairHealth::wave_px,           &PairHealth::gain,
+                             &PairHealth::clipped_left,     &PairHealth::clipped_right,     &PairHealth::blur_left_px,
+                             &PairHealth::blur_right_px,    &PairHealth::noise_share,       &PairHealth::stripe_share,
+                             &PairHealth::blocks_left,      &PairHealth::blocks_right,      &PairHealth::infinity_px,
                              &PairHealth::threshold_sigma};
 
 std::vector<double> known_of(const std::vector<PairHealth>& frames, double PairHealth::*number) {

@@ -178,6 +178,7 @@ void each_field(PairHealth& health, Visit& visit) {
   visit("row_scale", health.row_scale);
   visit("row_turn_rad", health.row_turn_rad);
   visit("row_error_px", health.row_error_px);
+  visit("row_scatter_px", health.row_scatter_px);
   visit("distortion_right", health.distortion_right);
   visit("distortion_both", health.distortion_both);
   visit("bowl_px", health.bowl_px);
@@ -189,6 +190,7 @@ void each_field(PairHealth& health, Visit& visit) {
   visit("blur_left_px", health.blur_left_px);
   visit("blur_right_px", health.blur_right_px);
   visit("noise_share", health.noise_share);
+  visit("stripe_share", health.stripe_share);
   visit("blocks_left", health.blocks_left);
   visit("blocks_right", health.blocks_right);
   visit("infinity_px", health.infinity_px);
