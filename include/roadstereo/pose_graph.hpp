@@ -58,10 +58,10 @@ struct PoseGraphInput {
 struct PoseGraphOptions {
   double max_time_offset_s = 30;  ///< between the clocks of frames and fixes, 0 … 600
   double time_offset_sd_s = 10;   ///< standard deviation of the expected time offset, 0.001 … 600; the offset is 0 if
-                                  ///< the data do not determine it
+                                  ///< the data do not tell it twice as well
   double lever_arm_sd_m = 1;      ///< expected distance of the antenna from the camera, per axis, 0.001 … 100
   double fix_correlation_s = 10;  ///< within this time the noise of fixes is the same, 0 … 3600
-  double max_fix_gap_s = 5;       ///< no position between fixes farther apart in time, 0.001 … 3600
+  double max_fix_gap_s = 5;       ///< no position between fixes, or frames, farther apart in time, 0.001 … 3600
 
   /// Throws Error naming the first option out of range.
   void validate() const;
@@ -70,6 +70,7 @@ struct PoseGraphOptions {
 /// How fixes and trajectory fit.
 struct TrackFit {
   Measurement time_offset_s;               ///< to be added to the times of the frames
+  bool time_offset_found = true;           ///< false: the data do not tell it, so that it is what was expected
   std::array<Measurement, 3> lever_arm_m;  ///< antenna in camera axes
   double rms_m = 0;                        ///< of the distances that remain, horizontally
   std::size_t frames = 0;                  ///< with a position

@@ -13,19 +13,9 @@ FixCurve::FixCurve(std::vector<PositionFix> fixes, double max_gap_s) : fixes_(st
   }
   for (const PositionFix& fix : fixes_) positions_.emplace_back(fix.position_m.data());
   fill_altitudes();
-  const std::size_t count = positions_.size();
-  const auto slope = [&](std::size_t a, std::size_t b) -> Eigen::Vector3d {
-    return (positions_[b] - positions_[a]) / (fixes_[b].time_s - fixes_[a].time_s);
-  };
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t a = i > 0 ? i - 1 : i, b = std::min(i + 1, count - 1);
-    if (a == i || b == i) {
-      tangents_.push_back(a == b ? Eigen::Vector3d::Zero().eval() : slope(a, b));
-      continue;
-    }
-    const double before = fixes_[i].time_s - fixes_[a].time_s, after = fixes_[b].time_s - fixes_[i].time_s;
-    tangents_.emplace_back((after * slope(a, i) + before * slope(i, b)) / (before + after));
-  }
+  std::vector<double> times_s;
+  for (const PositionFix& fix : fixes_) times_s.push_back(fix.time_s);
+  tangents_ = parabola_tangents(times_s, positions_);
 }
 
 /// Those that are unknown are on a line through the known ones before and after, level beyond the first and the last.

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "graph/hermite.hpp"
 #include "roadstereo/pose_graph.hpp"
 
 namespace roadstereo {
@@ -29,15 +30,7 @@ class FixCurve {
     const std::size_t a = segment, b = segment + 1;
     const double length_s = fixes_[b].time_s - fixes_[a].time_s;
     const T u = (time_s - fixes_[a].time_s) / length_s;
-    const T u2 = u * u, u3 = u2 * u;
-    const T from = 2.0 * u3 - 3.0 * u2 + 1.0, to = 3.0 * u2 - 2.0 * u3;
-    const T leave = (u3 - 2.0 * u2 + u) * length_s, arrive = (u3 - u2) * length_s;
-    Eigen::Matrix<T, 3, 1> position;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      position[i] =
-          from * positions_[a][i] + to * positions_[b][i] + leave * tangents_[a][i] + arrive * tangents_[b][i];
-    }
-    return position;
+    return hermite(positions_[a], positions_[b], tangents_[a], tangents_[b], length_s, u);
   }
 
  private:

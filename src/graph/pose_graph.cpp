@@ -5,11 +5,13 @@
 #include <map>
 #include <memory>
 #include <numeric>
+#include <utility>
 
 #include "core/degrees.hpp"
 #include "core/order_statistics.hpp"
 #include "graph/pose_graph_problem.hpp"
 #include "graph/track_alignment.hpp"
+#include "graph/track_observations.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -50,8 +52,18 @@ class Optimiser {
     std::vector<char> taken(result_.loops.size(), 0);
     std::unique_ptr<PoseGraphProblem> problem = solve(taken);
     if (has_track()) {  // with what the fixes prove to be
-      noise_m_ = noise_of_fixes();
-      problem = solve(taken);
+      constexpr int most_solutions = 4;
+      constexpr double settled = 0.8;  // of the noise before; it falls while the time offset is being found
+      for (int i = 0; i < most_solutions; ++i) {
+        const double before_m = std::exchange(noise_m_, noise_of_fixes());
+        if (i > 0 && noise_m_ > settled * before_m) break;
+        problem = solve(taken);
+      }
+      time_offset_found_ = finds_time_offset(*problem);
+      if (!time_offset_found_) {
+        track_.time_offset_s = aligned_offset_s_;
+        problem = solve(taken);
+      }
     }
     if (!taken.empty()) {
       taken = agreeing(*problem);
@@ -100,7 +112,7 @@ class Optimiser {
     result_.track_unused = alignment.unused;
     result_.track_contradicts = alignment.contradicts;
     if (!alignment.unused.empty()) return curve_.reset();
-    track_.time_offset_s = alignment.time_offset_s;
+    track_.time_offset_s = aligned_offset_s_ = alignment.time_offset_s;
     noise_m_ = input_.fixes.front().horizontal_sd_m;
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       const auto& to_earth = alignment.pieces[static_cast<std::size_t>(frames[i].piece)];
@@ -140,31 +152,59 @@ class Optimiser {
     return problem;
   }
 
-  void add_track(PoseGraphProblem& problem) {
+  /// Pieces that the fixes place, between their frames.
+  std::vector<PoseCurve> anchored_pieces() const {
+    std::map<int, std::vector<TimedPose>> pieces;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      if (anchored_[i] == 0 || !std::isfinite(input_.times_s[i])) continue;
+      pieces[input_.trajectory.frames[i].piece].push_back({input_.times_s[i], i, poses_[i]});
+    }
+    std::vector<PoseCurve> curves;
+    for (const auto& [piece, poses] : pieces) curves.emplace_back(poses);
+    return curves;
+  }
+
+  /// Positions within the time in which their noise is the same, if there are `steps` of them in `time_s`.
+  double shared_by(double steps, double time_s) const {
+    return std::max(1.0, std::max(options_.fix_correlation_s, 0.0) * steps / std::max(time_s, 1e-3));
+  }
+
+  void add_levels(PoseGraphProblem& problem) const {
     constexpr double road_sd_rad = to_radians(3);
-    const std::vector<PositionFix>& fixes = curve_->fixes();
-    const double frames_s = recorded_s(input_.times_s, options_.max_fix_gap_s);
-    const double shared_s = std::max(options_.fix_correlation_s, 0.0);
-    const double count = std::max(1.0, shared_s * static_cast<double>(poses_.size()) / std::max(frames_s, 1e-3));
     std::size_t roads = 0;
     for (std::size_t i = 0; i < poses_.size(); ++i) roads += anchored_[i] != 0 && input_.road_up[i] ? 1U : 0U;
-    Eigen::Vector3d error_sd(INFINITY, INFINITY, INFINITY);
+    const double weight = 1 / (road_sd_rad * std::sqrt(static_cast<double>(roads)));
     for (std::size_t i = 0; i < poses_.size(); ++i) {
-      if (anchored_[i] == 0) continue;
-      if (const auto& up = input_.road_up[i]) {
-        problem.add_level(i, Eigen::Vector3d(up->data()), 1 / (road_sd_rad * std::sqrt(static_cast<double>(roads))));
-      }
-      const double time_s = input_.times_s[i];
-      const std::optional<std::size_t> segment = curve_->segment(time_s + track_.time_offset_s);
-      if (!segment) continue;
-      const PositionFix& fix = fixes[*segment];
-      constexpr double unknown_altitude_m = 100;  // 0, then: as good as any, so that the height is determined
-      const bool has_z = !std::isnan(fix.position_m[2]) && !std::isnan(fixes[*segment + 1].position_m[2]);
-      const double vertical = has_z ? fix.vertical_sd_m / fix.horizontal_sd_m * noise_m_ : unknown_altitude_m;
-      problem.add_fix(i, {*curve_, time_s, *segment, {1 / noise_m_, 1 / noise_m_, 1 / vertical}}, count);
-      error_sd = error_sd.cwiseMin(Eigen::Vector3d(fix.horizontal_sd_m, fix.horizontal_sd_m, fix.vertical_sd_m));
+      const auto& up = input_.road_up[i];
+      if (anchored_[i] != 0 && up) problem.add_level(i, Eigen::Vector3d(up->data()), weight);
+    }
+  }
+
+  void add_track(PoseGraphProblem& problem) {
+    constexpr double unknown_altitude_m = 100;  // 0, then: as good as any, so that the height is determined
+    pieces_ = anchored_pieces();
+    observations_ = observe_track(pieces_, *curve_, track_.time_offset_s, options_.max_fix_gap_s);
+    std::vector<double> fix_times_s;
+    for (const PositionFix& fix : curve_->fixes()) fix_times_s.push_back(fix.time_s);
+    const double longest_s = std::max(options_.max_fix_gap_s, options_.fix_correlation_s);
+    const double of_fixes = shared_by(static_cast<double>(fix_times_s.size()) - 1, recorded_s(fix_times_s, longest_s));
+    const double of_frames =
+        shared_by(static_cast<double>(poses_.size()), recorded_s(input_.times_s, options_.max_fix_gap_s));
+    add_levels(problem);
+    Eigen::Vector3d error_sd(INFINITY, INFINITY, INFINITY);
+    for (const TrackObservation& one : observations_) {
+      const double vertical = one.has_z ? one.vertical_sd_m / one.horizontal_sd_m * noise_m_ : unknown_altitude_m;
+      problem.add_fix(one.frame(), {one, {1 / noise_m_, 1 / noise_m_, 1 / vertical}},
+                      one.interpolated ? of_frames : of_fixes);
+      error_sd = error_sd.cwiseMin(Eigen::Vector3d(one.horizontal_sd_m, one.horizontal_sd_m, one.vertical_sd_m));
     }
     problem.add_track_prior(error_sd, options_.lever_arm_sd_m, options_.time_offset_sd_s, options_.max_time_offset_s);
+    if (!time_offset_found_) problem.hold_time_offset();
+  }
+
+  /// Whether the track tells the time offset at least twice as well as it was known before.
+  bool finds_time_offset(PoseGraphProblem& problem) const {
+    return 2 * problem.track_deviations()[3] < std::min(options_.time_offset_sd_s, options_.max_time_offset_s);
   }
 
   /// What is left of a link when the graph's motion is undone.
@@ -228,17 +268,23 @@ class Optimiser {
     }
   }
 
-  /// Horizontal distances of the antenna from the fixes, frame by frame.
+  /// Horizontal distances of the antenna from the positions of the track.
   std::vector<double> distances() const {
     std::vector<double> result;
-    for (std::size_t i = 0; i < poses_.size(); ++i) {
-      const double time_s = input_.times_s[i] + track_.time_offset_s;
-      const std::optional<std::size_t> segment = anchored_[i] != 0 ? curve_->segment(time_s) : std::nullopt;
-      if (!segment) continue;
-      const Eigen::Vector3d antenna = poses_[i].rotation * track_.lever_arm + poses_[i].position;
-      result.push_back((antenna - curve_->at(*segment, time_s) + track_.fix_error).head<2>().norm());
+    for (const TrackObservation& one : observations_) {
+      const GraphPose& pose = poses_[one.frame()];
+      const Eigen::Vector3d antenna = one.antenna(pose.position, pose.rotation, track_.lever_arm, track_.time_offset_s);
+      result.push_back((antenna - one.position_m + track_.fix_error).head<2>().norm());
     }
     return result;
+  }
+
+  std::size_t frames_with_position() const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      if (anchored_[i] != 0 && curve_->segment(input_.times_s[i] + track_.time_offset_s)) ++count;
+    }
+    return count;
   }
 
   /// Standard deviation per axis. Of a distance in two dimensions the median is 1.18 of them.
@@ -255,10 +301,12 @@ class Optimiser {
       fit.lever_arm_m[i] = {track_.lever_arm[axis], deviations[axis]};
     }
     fit.time_offset_s = {track_.time_offset_s, deviations[3]};
+    fit.time_offset_found = time_offset_found_;
+    const std::vector<double> distances_m = distances();
     double squares = 0;
-    for (const double distance_m : distances()) squares += distance_m * distance_m;
-    fit.frames = distances().size();
-    fit.rms_m = std::sqrt(squares / static_cast<double>(fit.frames));
+    for (const double distance_m : distances_m) squares += distance_m * distance_m;
+    fit.frames = frames_with_position();
+    fit.rms_m = std::sqrt(squares / static_cast<double>(distances_m.size()));
     result_.track = fit;
   }
 
@@ -271,8 +319,12 @@ class Optimiser {
   std::vector<char> anchored_;          ///< whether the fixes place a frame
   std::vector<std::size_t> component_;  ///< of each frame: its first frame, or `anchor_component`
   std::unique_ptr<FixCurve> curve_;     ///< null without fixes
+  std::vector<PoseCurve> pieces_;       ///< anchored ones, before the last solution
+  std::vector<TrackObservation> observations_;
   TrackUnknowns track_;
-  double noise_m_ = 0;  ///< of the fixes, per axis
+  double aligned_offset_s_ = 0;    ///< 0 unless the alignment needs another one
+  bool time_offset_found_ = true;  ///< false: held
+  double noise_m_ = 0;             ///< of the fixes, per axis
   double link_variance_factor_ = 1;
   PoseGraphResult result_;
 };

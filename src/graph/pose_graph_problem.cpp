@@ -87,6 +87,10 @@ void PoseGraphProblem::hold(std::size_t frame) {
   problem_.SetParameterBlockConstant(poses_[frame].rotation.coeffs().data());
 }
 
+void PoseGraphProblem::hold_time_offset() {
+  problem_.SetParameterBlockConstant(&track_.time_offset_s);
+}
+
 void PoseGraphProblem::solve() {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
@@ -115,6 +119,7 @@ void PoseGraphProblem::linearise() {
   }
   if (problem_.HasParameterBlock(track_.lever_arm.data())) {
     track_column_ = column;
+    problem_.SetParameterBlockVariable(&track_.time_offset_s);
     options.parameter_blocks.insert(options.parameter_blocks.end(),
                                     {track_.lever_arm.data(), &track_.time_offset_s, track_.fix_error.data()});
   }

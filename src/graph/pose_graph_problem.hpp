@@ -27,17 +27,19 @@ class PoseGraphProblem {
 
   /// Links of the odometry have Huber's loss, loops Cauchy's.
   void add_link(std::size_t from, std::size_t to, const FrameLink& link, bool is_loop);
-  /// `count`: frames that share one error.
+  /// `count`: positions that share one error.
   void add_fix(std::size_t frame, const FixResidual& residual, double count);
   void add_level(std::size_t frame, const Eigen::Vector3d& up, double weight);
   /// Expected size of what is estimated besides poses, and the largest offset of the clocks.
   void add_track_prior(const Eigen::Vector3d& fix_error_sd, double lever_arm_sd, double time_offset_sd,
                        double max_time_offset_s);
   void hold(std::size_t frame);
+  /// Leaves the time offset as it is in `solve`; its uncertainty remains.
+  void hold_time_offset();
 
   void solve();
 
-  /// Linearises the problem where it stands.
+  /// Linearises the problem where it stands; a time offset that was held is free then.
   void linearise();
   /// Covariance of a pose: translation, then rotation vector, in the axes of its camera. After `linearise`.
   Eigen::Matrix<double, 6, 6> covariance(std::size_t frame);

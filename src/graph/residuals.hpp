@@ -3,8 +3,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
-#include "graph/fix_curve.hpp"
 #include "graph/graph_pose.hpp"
+#include "graph/track_observations.hpp"
 
 namespace roadstereo {
 
@@ -43,28 +43,30 @@ class LinkResidual {
   Eigen::Matrix<double, 6, 6> whitening_;
 };
 
-/// Distance of the antenna from where the fixes have it at the time of a frame, in standard errors.
+/// Distance of the antenna from a position of the track, in standard errors. The time offset moves the antenna along
+/// the odometry, whose speed is known to millimetres per second: that of a curve through noisy fixes would be no
+/// evidence of their time.
 class FixResidual {
  public:
-  FixResidual(const FixCurve& curve, double time_s, std::size_t segment, const Eigen::Vector3d& weights)
-      : curve_(curve), time_s_(time_s), segment_(segment), weights_(weights) {}
+  FixResidual(const TrackObservation& observation, const Eigen::Vector3d& weights)
+      : observation_(observation), weights_(weights) {}
 
   template <class T>
   bool operator()(const T* position, const T* rotation, const T* lever_arm, const T* fix_error, const T* time_offset,
                   T* residual) const {
     using Vector = Eigen::Matrix<T, 3, 1>;
-    const Eigen::Map<const Vector> p(position), lever(lever_arm), error(fix_error);
-    const Eigen::Map<const Eigen::Quaternion<T>> q(rotation);
-    const Vector antenna = q * lever.eval() + p;
-    const Vector fix = curve_.at(segment_, T(time_s_) + *time_offset) - error;
-    for (Eigen::Index i = 0; i < 3; ++i) residual[i] = weights_[i] * (antenna[i] - fix[i]);
+    const Vector p = Eigen::Map<const Vector>(position), lever = Eigen::Map<const Vector>(lever_arm);
+    const Eigen::Map<const Vector> error(fix_error);
+    const Eigen::Quaternion<T> q(Eigen::Map<const Eigen::Quaternion<T>>{rotation});
+    const Vector antenna = observation_.antenna(p, q, lever, *time_offset);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      residual[i] = weights_[i] * (antenna[i] - observation_.position_m[i] + error[i]);
+    }
     return true;
   }
 
  private:
-  const FixCurve& curve_;
-  double time_s_;
-  std::size_t segment_;
+  TrackObservation observation_;
   Eigen::Vector3d weights_;
 };
 

@@ -61,6 +61,28 @@ std::vector<double> distances(const std::vector<Match>& matches, const PlaneMoti
   return result;
 }
 
+/// Sums over what is left of successive matches.
+struct Correlation {
+  double product = 0, squares = 0;
+
+  void add(const std::vector<Match>& matches, const PlaneMotion& motion, double most_m) {
+    Point last = Point::Zero();
+    for (const Match& match : matches) {
+      Point rest = motion(match.frame) - match.fix;
+      rest *= std::min(1.0, most_m / std::max(rest.norm(), 1e-12));
+      product += rest.dot(last);
+      squares += rest.squaredNorm();
+      last = rest;
+    }
+  }
+
+  /// How many of `count` are independent, for a first-order autoregression.
+  double independent(double count) const {
+    const double correlation = squares > 0 ? std::clamp(product / squares, 0.0, 1.0) : 0;
+    return std::max(1.0, count * (1 - correlation) / (1 + correlation));
+  }
+};
+
 /// How a piece fits.
 struct PieceFit {
   PlaneMotion motion;
@@ -90,10 +112,21 @@ double extent(const std::vector<Match>& matches) {
 
 /// Fit at one time offset.
 struct OffsetFit {
-  double cost = INFINITY;
+  double mean_square_m2 = 0;  ///< of the distances, with the noise of the best receivers
+  double independent = 1;     ///< matches whose distances are independent
   std::size_t matched = 0;
   double median_m = 0;   ///< of the distances
   double median_sd = 0;  ///< ... in their standard errors
+
+  bool fits() const {
+    constexpr double most_sd = 3.5;  // three times the median of a distance in two dimensions
+    return median_sd <= most_sd;
+  }
+};
+
+/// Times by the receiver's clock.
+struct Interval {
+  double from_s = -INFINITY, to_s = INFINITY;
 };
 
 class Aligner {
@@ -105,30 +138,49 @@ class Aligner {
     for (std::size_t i = 0; i < up.size(); ++i) {
       if (up[i]) level_[i] = Eigen::Quaterniond::FromTwoVectors(*up[i], Eigen::Vector3d::UnitZ());
     }
-    std::vector<double> times_s(frames.size());
-    std::transform(frames.begin(), frames.end(), times_s.begin(), [](const auto& frame) { return frame.time_s; });
-    independent_ = std::max(1.0, recorded_s(times_s, options.max_fix_gap_s) / std::max(options.fix_correlation_s, 1.0));
+    if (frames.empty()) return;
+    const auto ends = std::minmax_element(frames.begin(), frames.end(),
+                                          [](const auto& one, const auto& other) { return one.time_s < other.time_s; });
+    recorded_ = {ends.first->time_s, ends.second->time_s};
   }
 
-  /// The best time offset: a coarse search, then a finer one around the best.
+  /// The time offset: 0, or, if that leaves out more than half of the frames that can have a position, the nearest to
+  /// it that does not. As long as another one is far more likely, or if it does not fit, the most likely one: a coarse
+  /// search, then a finer one around the best.
   double best_offset(bool mirrored) const {
-    constexpr double coarse_s = 0.5, fine_s = 0.02;
+    constexpr double coarse_s = 0.25, fine_s = 0.02;
+    constexpr int most_steps = 5;
     const double limit = options_.max_time_offset_s;
-    const double near = search(0, limit, coarse_s, mirrored);
-    return std::clamp(search(near, std::min(coarse_s, limit), fine_s, mirrored), -limit, limit);
+    const std::vector<double> coarse = grid(0, limit, coarse_s);
+    std::size_t most = 0;
+    for (const double offset_s : coarse) most = std::max(most, fit(offset_s, mirrored).matched);
+    double best_s = INFINITY;
+    for (const double offset_s : coarse) {
+      if (2 * fit(offset_s, mirrored).matched >= most && std::abs(offset_s) < std::abs(best_s)) best_s = offset_s;
+    }
+    for (int step = 0; step < most_steps; ++step) {
+      const bool any = step == 0 && !fit(best_s, mirrored).fits();
+      const double near_s = likeliest(coarse, best_s, most, mirrored, any);
+      const double finer_s = likeliest(grid(near_s, std::min(coarse_s, limit), fine_s), best_s, most, mirrored, any);
+      if (finer_s == best_s) break;
+      best_s = std::clamp(finer_s, -limit, limit);
+    }
+    return best_s;
   }
 
-  /// The cost is −2 log of the likelihood for fixes of unknown noise, and of the expected time offset.
-  OffsetFit fit(double offset_s, bool mirrored) const {
+  OffsetFit fit(double offset_s, bool mirrored, const Interval& interval = {}) const {
     constexpr double least_m = 0.01;  // noise of the best receivers
     constexpr double outlying = 3;    // medians
     std::vector<double> all, in_sd;
+    Correlation correlation;
     for (std::size_t piece = 0; piece < level_.size(); ++piece) {
-      const std::vector<Match> matches = matches_of(piece, offset_s, mirrored);
+      const std::vector<Match> matches = matches_of(piece, offset_s, mirrored, interval);
       if (!anchors(matches)) continue;
       const PieceFit fitted = fit_piece(matches);
       for (std::size_t i = 0; i < matches.size(); ++i) in_sd.push_back(fitted.distances_m[i] / matches[i].sd_m);
       all.insert(all.end(), fitted.distances_m.begin(), fitted.distances_m.end());
+      std::vector<double> sorted = fitted.distances_m;
+      correlation.add(matches, fitted.motion, outlying * upper_median(sorted));
     }
     OffsetFit result;
     result.matched = all.size();
@@ -138,9 +190,9 @@ class Aligner {
     const double most = outlying * result.median_m;
     double squares = 0;
     for (const double distance_m : all) squares += std::min(distance_m * distance_m, most * most);
-    const double relative = offset_s / options_.time_offset_sd_s;
-    result.cost = 2 * independent_ * std::log(squares / static_cast<double>(all.size()) + least_m * least_m) +
-                  relative * relative;
+    const auto count = static_cast<double>(all.size());
+    result.mean_square_m2 = squares / count + least_m * least_m;
+    result.independent = correlation.independent(count);
     return result;
   }
 
@@ -182,13 +234,14 @@ class Aligner {
     return matches.size() >= 2 && extent(matches) > matches.front().sd_m;
   }
 
-  std::vector<Match> matches_of(std::size_t piece, double offset_s, bool mirrored) const {
+  std::vector<Match> matches_of(std::size_t piece, double offset_s, bool mirrored,
+                                const Interval& interval = {}) const {
     std::vector<Match> matches;
     if (!level_[piece]) return matches;
     for (const TimedPosition& frame : frames_[piece]) {
       const double time_s = frame.time_s + offset_s;
       const std::optional<std::size_t> segment = curve_.segment(time_s);
-      if (!segment) continue;
+      if (!segment || !(time_s >= interval.from_s && time_s <= interval.to_s)) continue;
       const Eigen::Vector3d level = *level_[piece] * frame.position, fix = curve_.at(*segment, time_s);
       const PositionFix& before = curve_.fixes()[*segment];
       matches.push_back({level.head<2>(),
@@ -201,33 +254,65 @@ class Aligner {
     return matches;
   }
 
-  double search(double centre_s, double reach_s, double step_s, bool mirrored) const {
+  static std::vector<double> grid(double centre_s, double reach_s, double step_s) {
     const auto steps = static_cast<int>(reach_s / step_s);
-    std::vector<std::pair<double, OffsetFit>> fits;
-    std::size_t most = 0;
-    for (int i = -steps; i <= steps; ++i) {
-      fits.emplace_back(centre_s + i * step_s, fit(centre_s + i * step_s, mirrored));
-      most = std::max(most, fits.back().second.matched);
-    }
-    double best_s = centre_s, best = INFINITY;
-    for (const auto& [offset_s, fit] : fits) {  // an offset must not win by leaving frames out
-      if (2 * fit.matched < most || !(fit.cost < best)) continue;
-      best = fit.cost;
+    std::vector<double> offsets_s;
+    for (int i = -steps; i <= steps; ++i) offsets_s.push_back(centre_s + i * step_s);
+    return offsets_s;
+  }
+
+  /// Of the offsets that match at least half of `most` frames the one that is likeliest; the expected one if none is
+  /// far more likely, unless `any` other one is welcome.
+  double likeliest(const std::vector<double>& offsets_s, double expected_s, std::size_t most, bool mirrored,
+                   bool any) const {
+    double best_s = expected_s;
+    Gain best{-INFINITY, 0, true};
+    for (const double offset_s : offsets_s) {
+      if (2 * fit(offset_s, mirrored).matched < most) continue;
+      const Gain gain = gain_of(offset_s, expected_s, mirrored);
+      if (!any && !(gain.value > gain.significant)) continue;
+      const bool comparable = any || best_s == expected_s || gain.paired == best.paired;
+      if (comparable ? !(gain.value > best.value) : !gain.paired) continue;
+      best = gain;
       best_s = offset_s;
     }
     return best_s;
+  }
+
+  /// Twice the logarithm of how many times likelier an offset is, and what chance does not reach.
+  struct Gain {
+    double value, significant;
+    bool paired;  ///< on the same fixes; goes first
+  };
+
+  /// Compares an offset with the expected one, for fixes of unknown noise: on the fixes that both have frames for, so
+  /// that leaving bad ones out is no gain; each on its own, as two samples, where those are less than half.
+  Gain gain_of(double offset_s, double expected_s, bool mirrored) const {
+    constexpr double paired = 18;      // one degree of freedom, a hundred offsets: 99.7 %
+    constexpr double two_samples = 9;  // 4.5 standard deviations, 2 √ν, of the logarithm of F(ν, ν) times ν
+    const Interval common{recorded_.from_s + std::max(offset_s, expected_s),
+                          recorded_.to_s + std::min(offset_s, expected_s)};
+    OffsetFit expected = fit(expected_s, mirrored, common), other = fit(offset_s, mirrored, common);
+    const OffsetFit all_expected = fit(expected_s, mirrored), all_other = fit(offset_s, mirrored);
+    const bool apart =
+        2 * std::min(expected.matched, other.matched) < std::min(all_expected.matched, all_other.matched);
+    if (apart) expected = all_expected, other = all_other;
+    const double freedom = 2 * other.independent;  // a wrong offset leaves what is alike in neighbours
+    const double sd_s = options_.time_offset_sd_s;
+    return {freedom * std::log(expected.mean_square_m2 / other.mean_square_m2) -
+                (offset_s * offset_s - expected_s * expected_s) / (sd_s * sd_s),
+            apart ? std::max(paired, two_samples * std::sqrt(freedom)) : paired, !apart};
   }
 
   std::vector<std::vector<TimedPosition>> frames_;  ///< of each piece
   const FixCurve& curve_;
   const PoseGraphOptions& options_;
   std::vector<std::optional<Eigen::Quaterniond>> level_;  ///< world of each piece to one whose z axis is the vertical
-  double independent_ = 1;                                ///< fixes whose errors differ
+  Interval recorded_{0, 0};                               ///< first and last frame, by the camera's clock
 };
 
 /// Why fixes are refused; empty if they fit.
 std::string refusal(const Aligner& aligner, double offset_s) {
-  constexpr double most_sd = 3.5;  // three times the median of a distance in two dimensions
   constexpr double better = 3, noticeable = 0.01;
   const OffsetFit straight = aligner.fit(offset_s, false);
   const OffsetFit mirrored = aligner.fit(aligner.best_offset(true), true);
@@ -237,7 +322,7 @@ std::string refusal(const Aligner& aligner, double offset_s) {
       straight.median_m > noticeable * aligner.largest_extent(offset_s)) {
     text << "the positions of the track fit the trajectory only mirrored (" << mirrored.median_m << " m instead of "
          << straight.median_m << " m, median): east and west, or latitude and longitude, may be exchanged";
-  } else if (straight.median_sd > most_sd) {
+  } else if (!straight.fits()) {
     text << "the positions of the track do not fit the trajectory: they are " << straight.median_m
          << " m off (median) after the best turn, shift and time offset, " << straight.median_sd << " standard errors";
   }

@@ -35,7 +35,8 @@ double recorded_s(std::span<const double> times_s, double max_gap_s);
 std::vector<TimedPosition> frames_to_align(const std::vector<TimedPosition>& frames);
 
 /// Fits the pieces of a trajectory to fixes: for every time offset the turn about the vertical and the shift of each
-/// piece (least squares, once more without what is off by more than three medians); the most likely offset.
+/// piece (least squares, once more without what is off by more than three medians); the offset 0 unless another one is
+/// far more likely. The pose graph finds smaller offsets.
 /// `up` is the vertical in the world of each piece, absent where unknown. Refuses fixes that do not fit, and those that
 /// fit only mirrored.
 TrackAlignment align_to_track(const std::vector<TimedPosition>& frames,

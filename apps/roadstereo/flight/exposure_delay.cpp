@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace roadstereo::cli {
 namespace {
@@ -32,11 +33,47 @@ std::vector<Sample> samples_of(const std::vector<FrameLink>& links, const std::m
   return samples;
 }
 
+/// Share of the largest turn, a run of samples that turn the same way, of the rotation of all.
+double share_of_largest_turn(const std::vector<Sample>& samples) {
+  double all = 0, turn = 0, largest = 0;
+  bool left = true;
+  for (const Sample& sample : samples) {
+    const double rotation = sample.weight * sample.rate * sample.rate;
+    if ((sample.rate > 0) != left) turn = 0;
+    left = sample.rate > 0;
+    turn += rotation;
+    all += rotation;
+    largest = std::max(largest, turn);
+  }
+  return largest / all;
+}
+
+/// Standard error of a sum of scores by blocking: from the sums of batches of successive ones, for the length of batch
+/// that gives the largest; two parameters were estimated.
+double blocked_error(std::vector<double> scores) {
+  constexpr std::size_t min_batches = 8;
+  double largest = 0;
+  while (scores.size() >= min_batches) {
+    double squares = 0;
+    for (const double score : scores) squares += score * score;
+    const auto count = static_cast<double>(scores.size());
+    largest = std::max(largest, std::sqrt(squares * count / (count - 2)));
+    std::vector<double> pairs;
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+      if (i % 2 == 0 && i + 1 < scores.size()) pairs.push_back(0);
+      pairs.back() += scores[i];  // the last one takes a score that is left over
+    }
+    scores = std::move(pairs);
+  }
+  return largest;
+}
+
 }  // namespace
 
 std::optional<HealthFinding> exposure_delay(const std::vector<FrameLink>& links, const std::map<int, double>& times_s,
                                             double focal_px) {
   constexpr double standard_errors = 5;
+  constexpr double most_of_one_turn = 0.75;  // what else differs in the one turn of a recording looks like a delay
   constexpr std::size_t min_references = 10;
   const bool timed =
       std::all_of(times_s.begin(), times_s.end(), [](const auto& frame) { return std::isfinite(frame.second); });
@@ -61,11 +98,11 @@ std::optional<HealthFinding> exposure_delay(const std::vector<FrameLink>& links,
     scores[sample.reference] += sample.weight * (sample.rate - mean_rate) * residual;
   }
   if (!(spread > 0) || scores.size() < min_references) return std::nullopt;
-  double squares = 0;
-  for (const auto& [reference, score] : scores) squares += score * score;
-  const auto count = static_cast<double>(scores.size());
+  if (share_of_largest_turn(samples) > most_of_one_turn) return std::nullopt;
+  std::vector<double> in_order;
+  for (const auto& [reference, score] : scores) in_order.push_back(score);
   const double unit = (timed ? 1000 : 1) / focal_px;
-  const double delay = unit * slope, error = unit * std::sqrt(squares * count / (count - 2)) / spread;
+  const double delay = unit * slope, error = unit * blocked_error(std::move(in_order)) / spread;
   if (!(std::abs(delay) > standard_errors * error)) return std::nullopt;
   const char* const name = timed ? "ms" : "frames";
   return HealthFinding{

@@ -104,8 +104,14 @@ std::string loops_text(const PoseGraphResult& graph) {
 std::string track_text(const PoseGraphResult& graph) {
   if (!graph.track) return graph.track_unused.empty() ? std::string() : "; track not used: " + graph.track_unused;
   const TrackFit& fit = *graph.track;
-  std::string text = fmt::format("; track RMS {:.3f} m, times of the frames {:+.3f} ± {:.3f} s, antenna at", fit.rms_m,
-                                 fit.time_offset_s.value, fit.time_offset_s.std_error);
+  std::string text = fmt::format("; track RMS {:.3f} m, ", fit.rms_m);
+  if (fit.time_offset_found) {
+    text += fmt::format("times of the frames {:+.3f} ± {:.3f} s", fit.time_offset_s.value, fit.time_offset_s.std_error);
+  } else {
+    text += fmt::format("clocks cannot be checked by this way, time offset assumed to be {:.3f} ± {:.3g} s",
+                        fit.time_offset_s.value, fit.time_offset_s.std_error);
+  }
+  text += ", antenna at";
   for (const Measurement& axis : fit.lever_arm_m) text += fmt::format(" {:+.2f} ± {:.2f}", axis.value, axis.std_error);
   return text + " m";
 }
