@@ -105,5 +105,43 @@ TEST(FlightPositions, DamageHasItsOwnStation) {
   std::filesystem::remove(file);
 }
 
+// 20 m to the north at 1 m/s and back on the same way. A hole 8 m from the start is first seen 5 m ahead, and best on
+// the way back, 2 m ahead: its place is that of the best frame, its station that of the way there.
+TEST(FlightPositions, StationIsThatOfFirstPass) {
+  constexpr double north_m = 111132.0;
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "there_and_back_track.csv";
+  std::ofstream text(file);
+  text << "time,lat,lon\n";
+  for (int i = 0; i <= 40; ++i) {
+    char line[80];
+    std::snprintf(line, sizeof line, "%d,%.10f,9\n", i, 45 + (i <= 20 ? i : 40 - i) / north_m);
+    text << line;
+  }
+  text.close();
+  TrackSettings settings;
+  settings.file = file.string();
+  FlightPositions positions(settings);
+  for (int i = 0; i <= 40; ++i) {
+    io::FlightFrame frame;
+    frame.index = i;
+    frame.time_s = i;
+    positions.add(frame, {});
+  }
+  std::filesystem::remove(file);
+  io::RoadDamage damage;
+  damage.first_frame = 3;
+  damage.last_frame = 31;
+  damage.frame = 30;
+  damage.best.metrics.emplace().road_centroid_m = {0.5, 2};
+  positions.locate(damage);
+  EXPECT_NEAR(damage.station_m, 8, 0.02);
+  EXPECT_DOUBLE_EQ(damage.ahead_m, 2);
+  ASSERT_TRUE(damage.position);
+  EXPECT_NEAR((damage.position->lat_deg - 45) * north_m, 8, 0.02);
+  damage.first_frame = 25;
+  positions.locate(damage);
+  EXPECT_NEAR(damage.station_m, 32, 0.02) << "not seen before";
+}
+
 }  // namespace
 }  // namespace roadstereo::cli

@@ -79,6 +79,41 @@ double FlightPositions::distance_ahead_m(const Damage& damage) const {
   return forward_m * std::cos(mount_yaw_rad_) - right_m * std::sin(mount_yaw_rad_);
 }
 
+/// The same of a place on the Earth, from a frame with a position.
+double FlightPositions::distance_ahead_m(const io::GeoFrame& frame, const io::GeoPosition& place) const {
+  const io::GeoPosition& camera = *frame.position;
+  if (!std::isfinite(camera.heading_deg)) return 0;
+  const double east_deg = std::remainder(place.lon_deg - camera.lon_deg, 360.0);
+  const double north_m =
+      std::copysign(io::distance_m(camera, {place.lat_deg, camera.lon_deg}), place.lat_deg - camera.lat_deg);
+  const double east_m = std::copysign(io::distance_m(camera, {camera.lat_deg, place.lon_deg}), east_deg);
+  const double travel_rad = to_radians(camera.heading_deg) - mount_yaw_rad_;
+  return north_m * std::cos(travel_rad) + east_m * std::sin(travel_rad);
+}
+
+/// Frame with a position that is nearest to a place when the camera first passes it: from a frame that shows it until
+/// the camera goes away, since it may come back.
+const io::GeoFrame* FlightPositions::first_pass(std::int64_t first_frame, const io::GeoPosition& place) const {
+  constexpr double min_step_m = 0.5;
+  const io::GeoFrame* nearest = nullptr;
+  double min_distance_m = std::numeric_limits<double>::infinity();
+  for (auto frame = at_or_after(first_frame); frame != frames_.end(); ++frame) {
+    if (!frame->position) continue;
+    const double away_m = io::distance_m(*frame->position, place);
+    if (away_m > min_distance_m + min_step_m) break;
+    if (away_m >= min_distance_m) continue;
+    min_distance_m = away_m;
+    nearest = &*frame;
+  }
+  return nearest;
+}
+
+/// First frame of at least that index.
+std::vector<io::GeoFrame>::const_iterator FlightPositions::at_or_after(std::int64_t index) const {
+  return std::lower_bound(frames_.begin(), frames_.end(), index,
+                          [](const io::GeoFrame& one, std::int64_t of) { return one.index < of; });
+}
+
 /// Whether the camera has left the place of an earlier frame, by the poses; true without them.
 bool FlightPositions::has_moved(const io::FlightFrame& frame) {
   const bool stands = io::stands_at(view_from_, frame);
@@ -100,13 +135,19 @@ void FlightPositions::update_station(const io::GeoPosition& position) {
 }
 
 void FlightPositions::locate(io::RoadDamage& damage) const {
-  const auto frame = std::lower_bound(frames_.begin(), frames_.end(), damage.frame,
-                                      [](const io::GeoFrame& one, std::int64_t index) { return one.index < index; });
+  const auto frame = at_or_after(damage.frame);
   if (frame == frames_.end() || frame->index != damage.frame) return;
   damage.time_s = frame->time_s;
   if (!frame->position) return;
-  damage.station_m = frame->station_m + distance_ahead_m(damage.best);
+  damage.ahead_m = distance_ahead_m(damage.best);
+  damage.station_m = frame->station_m + damage.ahead_m;
   damage.position = position_of(damage.best, frame->position, frame->height_m);
+  if (damage.position) {
+    const io::GeoFrame* const passing = first_pass(damage.first_frame, *damage.position);
+    if (passing != nullptr && passing->index != damage.frame) {
+      damage.station_m = passing->station_m + distance_ahead_m(*passing, *damage.position);
+    }
+  }
   if (!damage.best.metrics) return;
   damage.outline_deg = on_earth(damage.best.metrics->outline_m, frame->position);
 }

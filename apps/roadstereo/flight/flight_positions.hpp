@@ -31,7 +31,8 @@ class FlightPositions {
   /// Returns how many fixes of the track were left out as outliers, and the first one's time; "" if none was.
   std::string outliers_text() const;
 
-  /// Sets position, outline and station of a damage from its best frame, if that has a position.
+  /// Sets position and outline of a damage from its best frame, if that has a position, and the station where the
+  /// camera first passed that position.
   void locate(io::RoadDamage& damage) const;
 
   const std::vector<io::GeoFrame>& frames() const { return frames_; }
@@ -43,6 +44,9 @@ class FlightPositions {
   bool has_moved(const io::FlightFrame& frame);
   void update_station(const io::GeoPosition& position);
   double distance_ahead_m(const Damage& damage) const;
+  double distance_ahead_m(const io::GeoFrame& frame, const io::GeoPosition& place) const;
+  std::vector<io::GeoFrame>::const_iterator at_or_after(std::int64_t index) const;
+  const io::GeoFrame* first_pass(std::int64_t first_frame, const io::GeoPosition& place) const;
 
   double offset_s_;
   double mount_yaw_rad_;

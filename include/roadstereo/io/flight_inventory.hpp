@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #pragma GCC visibility push(default)
 namespace roadstereo::io {
 
+class OutlineUnion;
 class PlaceIndex;
 
 /// One damage of the road, seen in one or several frames of a flight: the record behind every table, GIS layer and
@@ -24,16 +24,18 @@ struct RoadDamage {
   bool candidate = false;                        ///< listed apart and not counted (FlightInventory)
   std::int64_t sightings = 0;                    ///< number of frames that show it
   std::int64_t first_frame = 0, last_frame = 0;  ///< indices of the frames that show it
-  std::int64_t frame = 0;  ///< index of the best frame: not cut by the border if possible, then smallest error
+  std::int64_t frame = 0;  ///< index of the best frame: not cut by the border and then of the smallest error; if the
+                           ///< border cuts it in all frames, of those that show at least half as much as any
   std::string frame_name;
   double time_s = FlightFrame::unknown;
-  Damage best;                          ///< the measurement in that frame; area, length, volume and quantity of
-                                        ///< one that the border cuts in all frames are extended to what
-                                        ///< these show together, where their poses are known
-  std::optional<GeoPosition> position;  ///< of its centroid
+  Damage best;  ///< the measurement in that frame; area, volume, length, diameter and quantity of one that the border
+                ///< cuts in all frames (`cut_by_border`) are extended to what these show together, where their poses
+                ///< are known, and are the least that it has
+  std::optional<GeoPosition> position;             ///< of its centroid
   std::vector<std::array<double, 2>> outline_deg;  ///< (longitude, latitude), counterclockwise, not closed
-  double station_m = FlightFrame::unknown;         ///< distance along the track, of the damage itself
-  std::string picture;                             ///< file in the folder of the results; empty: none
+  double station_m = FlightFrame::unknown;         ///< along the track, of the damage itself, when first passed
+  double ahead_m = 0;   ///< distance of its centroid from the camera along the travel, in the best frame
+  std::string picture;  ///< file in the folder of the results; empty: none
 };
 
 /// Returns whether a damage is a rut. A rut runs through the images and gives no information about their motion.
@@ -89,7 +91,6 @@ class FlightInventory {
     std::optional<Place> place;
   };
   using Ids = std::vector<std::int64_t>;
-  using OutlineCells = std::set<std::array<int, 2>>;
   static std::optional<Place> place_of(const Damage& damage, const std::optional<FlightPose>& pose);
   std::int64_t seen_here(const Sighting& now, const FlightPose& pose, const Ids& taken) const;
   std::int64_t seen_in_picture(const Sighting& now, const Ids& taken) const;
@@ -113,11 +114,16 @@ class FlightInventory {
     Sighting last;
     std::optional<Place> best_place;  ///< in the best frame
     Agreement views;
-    Damage measured;            ///< in the best frame
-    int piece = 0;              ///< of the first sighting with a place
-    RigidTransform to_road{};   ///< from the axes of the first camera of the piece to the road of the first sighting
-    OutlineCells covered, own;  ///< cells there of all sightings, and of that in the best frame
+    Damage measured;           ///< in the best frame
+    double largest_cut = 0;    ///< area of the largest sighting that the border cuts, m², or pixels
+    int piece = 0;             ///< of the first sighting with a place
+    RigidTransform to_road{};  ///< from the axes of the first camera of the piece to the road of the first sighting
+    std::unique_ptr<OutlineUnion> covered;  ///< what the sightings cover there whose depths agree with the best one's
+    std::unique_ptr<OutlineUnion> largest;  ///< what the largest of these does
+    double largest_m2 = 0;                  ///< its measured area
+    Measurement depth;                      ///< maximum depth of the best sighting
   };
+  static void cover(const FlightFrame& frame, const Sighting& now, Known& known);
   static void extend(const FlightFrame& frame, const Sighting& now, bool is_best, Known& known, Damage& best);
 
   double min_confidence_;

@@ -71,7 +71,7 @@ std::vector<NamedText> geojson_files(const GeoLayers& layers);
 /// on failure; Error if built without GDAL.
 std::vector<std::uint8_t> geopackage(const GeoLayers& layers, const Track& track);
 
-/// Header line of damages.csv and candidates.csv: id, lat_deg, lon_deg and the ten columns that are used first.
+/// Header line of damages.csv and candidates.csv: id, lat_deg, lon_deg and the eleven columns that are used first.
 std::string road_damages_csv_names();
 /// One row per damage, in the order given (RFC 4180: CRLF). Unknown values are empty.
 std::string road_damages_csv_rows(std::span<const RoadDamage> damages);

@@ -7,6 +7,7 @@
 #include "core/log_odds.hpp"
 #include "core/order_statistics.hpp"
 #include "io/flight/outline_overlap.hpp"
+#include "io/flight/outline_union.hpp"
 #include "io/flight/place_index.hpp"
 #include "io/flight/standing.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
@@ -21,10 +22,50 @@ constexpr std::int64_t max_gap = 2;
 /// Overlap of two sightings of one damage, as a fraction of the smaller one.
 constexpr double min_overlap = 0.2;
 
-/// Whether the damage is measured better: not cut by the border, then smaller error.
-bool is_better(const Damage& one, const Damage& other) {
-  return std::tuple(one.cut_by_border, one.max_depth().std_error) <
-         std::tuple(other.cut_by_border, other.max_depth().std_error);
+/// Area on the road, or in the picture without a calibration.
+double size_of(const Damage& damage) {
+  return damage.metrics ? damage.metrics->area_m2.value : static_cast<double>(damage.pixels);
+}
+
+/// Whether the damage is measured better: not cut by the border; if it is, at least half as large as the largest such
+/// sighting, else it is a splinter; then smaller error.
+bool is_better(const Damage& one, const Damage& other, double largest_cut) {
+  constexpr double min_share = 0.5;
+  const auto rank = [&](const Damage& damage) {
+    const bool splinter = damage.cut_by_border && size_of(damage) < min_share * largest_cut;
+    return std::tuple(damage.cut_by_border, splinter, damage.max_depth().std_error);
+  };
+  return rank(one) < rank(other);
+}
+
+/// Whether two depths are equal within three standard errors.
+bool agree_in_depth(const Measurement& one, const Measurement& other) {
+  constexpr double max_sigmas = 3;
+  return std::abs(one.value - other.value) <= max_sigmas * std::hypot(one.std_error, other.std_error);
+}
+
+/// Area of a damage of which the largest sighting shows `largest_m2`: that and what only others cover, but no more than
+/// the largest one goes on as wide as it is, since the outlines of many frames together are wider than each.
+double area_of(const OutlineUnion& covered, const OutlineUnion& largest, double largest_m2) {
+  const std::array<double, 2> axis = covered.axis();
+  const double by_area = largest_m2 + covered.area_m2() - largest.area_m2();
+  const double by_length = largest_m2 * covered.extent_m(axis) / largest.extent_m(axis);
+  return std::max(largest_m2, std::min(by_area, by_length));
+}
+
+/// Extends a measurement in one frame to an area that is larger by that factor, at least 1, and as deep.
+void enlarge(double growth, double length_m, DamageMetrics& metrics) {
+  for (Measurement* const measured : {&metrics.area_m2, &metrics.volume_m3}) {
+    *measured = {growth * measured->value, growth * measured->std_error};
+  }
+  metrics.diameter_m *= std::sqrt(growth);
+  metrics.length_m = std::max(metrics.length_m, length_m);
+  if (metrics.unit == DistressUnit::metre) {
+    metrics.quantity = metrics.length_m;
+  } else if (metrics.unit == DistressUnit::square_metre ||
+             metrics.quantity != 1) {  // a large pothole counts as several
+    metrics.quantity *= growth;
+  }
 }
 
 /// Overlap of two boxes after `box` is moved, as a fraction of the smaller one.
@@ -148,11 +189,10 @@ std::int64_t FlightInventory::seen_in_picture(const Sighting& now, const Ids& ta
   return best;
 }
 
-/// Extends what one frame shows of a damage that the border cuts to what all have shown.
-void FlightInventory::extend(const FlightFrame& frame, const Sighting& now, bool is_best, Known& known, Damage& best) {
-  if (!known.measured.cut_by_border || !now.place) return;
-  if (is_best) known.own.clear();
-  if (known.covered.empty()) {
+/// Adds what a sighting shows of a damage to what others do.
+void FlightInventory::cover(const FlightFrame& frame, const Sighting& now, Known& known) {
+  if (!known.covered) {
+    known.covered = std::make_unique<OutlineUnion>();
     known.to_road = inverse(frame.pose->road_to_world);
     known.piece = now.place->piece;
   }
@@ -162,18 +202,32 @@ void FlightInventory::extend(const FlightFrame& frame, const Sighting& now, bool
     const auto on_road = transform_point(known.to_road, point);
     outline.push_back({on_road[0], on_road[1]});
   }
-  const OutlineCells cells = cells_of(outline);
-  known.covered.insert(cells.begin(), cells.end());
-  if (is_best) known.own = cells;
-  if (known.own.empty()) return;
-  best = known.measured;
-  DamageMetrics& metrics = *best.metrics;
-  const double growth = static_cast<double>(known.covered.size()) / static_cast<double>(known.own.size());
-  for (Measurement* const measured : {&metrics.area_m2, &metrics.volume_m3}) {
-    *measured = {growth * measured->value, growth * measured->std_error};
+  known.covered->add(outline);
+  const double area_m2 = size_of(now.damage);
+  if (known.largest && area_m2 <= known.largest_m2) return;
+  known.largest = std::make_unique<OutlineUnion>();
+  known.largest->add(outline);
+  known.largest_m2 = area_m2;
+}
+
+/// Extends what one frame shows of a damage that the border cuts to what all have shown. Sightings whose depths differ
+/// from that of the best one are not of the same hollow and count no further.
+void FlightInventory::extend(const FlightFrame& frame, const Sighting& now, bool is_best, Known& known, Damage& best) {
+  if (!known.measured.cut_by_border || !known.measured.metrics) return;
+  const bool agrees = !known.covered || agree_in_depth(now.damage.max_depth(), known.depth);
+  if (is_best) {
+    known.depth = now.damage.max_depth();
+    if (!agrees) {
+      known.covered.reset();
+      known.largest.reset();
+    }
   }
-  metrics.length_m *= growth;  // it goes on as wide as it is
-  if (metrics.unit != DistressUnit::count) metrics.quantity *= growth;
+  if (now.place && (is_best || agrees)) cover(frame, now, known);
+  const double in_frame_m2 = size_of(known.measured);
+  if (!known.largest || !(in_frame_m2 > 0)) return;
+  best = known.measured;
+  enlarge(std::max(1.0, area_of(*known.covered, *known.largest, known.largest_m2) / in_frame_m2),
+          known.covered->extent_m(known.covered->axis()), *best.metrics);
 }
 
 /// Whether a damage was seen a few frames ago, and the image has not jumped since.
@@ -261,7 +315,10 @@ std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
     ++on_road.sightings;
     on_road.last_frame = frame.index;
     const bool first_damage = !candidate && !views.is_damage;
-    const bool is_best = is_new || first_damage || (views.is_damage != candidate && is_better(damage, known.measured));
+    const bool counts = is_new || first_damage || views.is_damage != candidate;
+    if (first_damage) known.largest_cut = 0;
+    if (counts && damage.cut_by_border) known.largest_cut = std::max(known.largest_cut, size_of(damage));
+    const bool is_best = is_new || first_damage || (counts && is_better(damage, known.measured, known.largest_cut));
     if (is_best) {
       measure(frame, damage, on_road);
       known.measured = damage;

@@ -63,13 +63,12 @@ double outline_overlap(const Outline& one, const Outline& other) {
 }
 
 std::set<std::array<int, 2>> cells_of(const Outline& outline) {
-  constexpr double cell_m = 0.05;
   std::set<std::array<int, 2>> cells;
   if (outline.empty()) return cells;
-  const auto first_centre = [](double at) { return static_cast<int>(std::ceil(at / cell_m - 0.5)); };
+  const auto first_centre = [](double at) { return static_cast<int>(std::ceil(at / outline_cell_m - 0.5)); };
   const auto [low, high] = range_of(outline);
   for (int row = first_centre(low); row < first_centre(high); ++row) {
-    const std::vector<double> at = crossings(outline, (row + 0.5) * cell_m);
+    const std::vector<double> at = crossings(outline, (row + 0.5) * outline_cell_m);
     for (std::size_t k = 0; k + 1 < at.size(); k += 2) {
       for (int column = first_centre(at[k]); column < first_centre(at[k + 1]); ++column) cells.insert({column, row});
     }

@@ -21,7 +21,8 @@
 namespace roadstereo::io {
 namespace {
 
-constexpr double mm = 1000;  // in a metre
+constexpr double mm = 1000;      // in a metre
+constexpr double litres = 1000;  // in a cubic metre
 
 std::string jpeg_uri(const std::vector<std::uint8_t>& jpeg) {
   return "data:image/jpeg;base64," + base64(jpeg);
@@ -96,7 +97,8 @@ ReportCell quantity_cell(const RoadDamage& damage) {
   const char* const unit = metrics.unit == DistressUnit::square_metre ? "m²"
                            : metrics.unit == DistressUnit::metre      ? "m"
                                                                       : "";
-  return {escaped(metrics.quantity == 1 && unit[0] == 0 ? "1" : value_text(metrics.quantity, unit)), metrics.quantity};
+  if (metrics.quantity == 1 && unit[0] == 0) return {"1", 1};
+  return {escaped(bound_text(damage.best.cut_by_border, value_text(metrics.quantity, unit))), metrics.quantity};
 }
 
 std::vector<Column> damage_columns_of(const FlightReportInput& input) {
@@ -113,8 +115,9 @@ std::vector<Column> damage_columns_of(const FlightReportInput& input) {
     columns.push_back({"Depth", "mm", [](const D& d) {
                          return metric_cell(d, [](const M& m) { return measured_cell(scaled(m.max_depth_m, mm)); });
                        }});
-    columns.push_back(
-        {"Area", "m²", [](const D& d) { return metric_cell(d, [](const M& m) { return measured_cell(m.area_m2); }); }});
+    columns.push_back({"Area", "m²", [](const D& d) {
+                         return metric_cell(d, [&](const M& m) { return measured_cell(d.best, m.area_m2); });
+                       }});
     columns.push_back({"Quantity", "", quantity_cell});
   } else {
     columns.push_back({"Max change", "px", [](const D& d) { return measured_cell(d.best.max_depth_px); }});
@@ -145,7 +148,7 @@ std::string damages_of(const FlightReportInput& input) {
   for (const ReportedDamage& reported : input.damages) {
     if (rows.size() < max_damage_rows) rows.push_back(reported.damage);
   }
-  std::string hint = std::string(sorting_hint) + " ± is one standard error.";
+  std::string hint = std::string(sorting_hint) + " ± is one standard error; ≥: cut by the border in every frame.";
   if (rows.size() < input.damages.size()) {
     hint = "The worst " + std::to_string(rows.size()) + " of " + std::to_string(input.damages.size()) +
            " damages; all are in damages.csv. " + hint;
@@ -165,6 +168,15 @@ std::string candidates_of(const FlightReportInput& input) {
       rows);
 }
 
+/// Size of a damage that the border cuts in all of several frames: what these show together.
+std::vector<std::pair<std::string, std::string>> sizes_of(const RoadDamage& damage) {
+  if (!damage.best.cut_by_border || !damage.best.metrics || damage.sightings == 1) return {};
+  const DamageMetrics& metrics = *damage.best.metrics;
+  return {{"area over all frames", bound_text(true, measured_text(metrics.area_m2, "m²"))},
+          {"volume over all frames", bound_text(true, measured_text(scaled(metrics.volume_m3, litres), "L"))},
+          {"length over all frames", bound_text(true, value_text(metrics.length_m, "m"))}};
+}
+
 std::string where_html(const FlightReportInput& input, const RoadDamage& damage) {
   std::vector<std::pair<std::string, std::string>> places;
   if (damage.position) places.emplace_back("latitude, longitude", place_text(*damage.position));
@@ -175,6 +187,8 @@ std::string where_html(const FlightReportInput& input, const RoadDamage& damage)
     places.emplace_back("time", time ? iso_text(*time) : number_text(damage.time_s, 2) + "\u00a0s");
   }
   places.emplace_back("seen in", std::to_string(damage.sightings) + (damage.sightings == 1 ? " frame" : " frames"));
+  const auto sizes = sizes_of(damage);
+  places.insert(places.end(), sizes.begin(), sizes.end());
   return property_list(places);
 }
 

@@ -32,9 +32,8 @@ double station_of(std::int64_t index, std::span<const GeoFrame> frames) {
 /// First and last station of a damage; both are that of its centroid unless the border cuts it in all frames: such a
 /// one goes on from where the first frame shows it to where the last does, at most for its length.
 std::array<double, 2> stations_of(const RoadDamage& damage, std::span<const GeoFrame> frames) {
-  const double ahead_m = damage.station_m - station_of(damage.frame, frames);
-  const double first_m = station_of(damage.first_frame, frames) + ahead_m;
-  const double last_m = station_of(damage.last_frame, frames) + ahead_m;
+  const double first_m = station_of(damage.first_frame, frames) + damage.ahead_m;
+  const double last_m = station_of(damage.last_frame, frames) + damage.ahead_m;
   const Damage& best = damage.best;
   if (!best.cut_by_border || !best.metrics || !(first_m <= last_m)) return {damage.station_m, damage.station_m};
   return {first_m, std::min(last_m, first_m + best.metrics->length_m)};

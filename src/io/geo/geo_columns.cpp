@@ -94,7 +94,7 @@ std::vector<RecordColumn> first_columns() {
        [](const RoadDamage& d) { return d.position ? number(d.position->lon_deg) : GeoValue(); }}};
   const std::vector<DamageColumn>& all = damage_columns();
   for (const char* name : {"distress", "severity", "max_depth_m", "max_depth_m_stderr", "area_m2", "area_m2_stderr",
-                           "quantity", "unit", "confidence"}) {
+                           "quantity", "unit", "confidence", "cut_by_border"}) {
     const auto found = std::find_if(all.begin(), all.end(),
                                     [name](const DamageColumn& column) { return std::string(column.name) == name; });
     columns.push_back(damage_property(*found, &RoadDamage::best));

@@ -48,7 +48,7 @@ const GeoLayer<GeoSighting>& sighting_layer();
 const GeoLayer<RoadDamage>& damage_layer(bool candidates);
 
 /// Number of first columns of `damage_layer` that are those of damages.csv.
-inline constexpr std::size_t damage_csv_columns = 13;
+inline constexpr std::size_t damage_csv_columns = 14;
 
 /// Returns the rows of a layer of damages.
 std::vector<RoadDamage> damage_rows(const GeoLayers& layers, bool candidates);

@@ -27,6 +27,10 @@ ReportCell measured_cell(const Measurement& measured) {
   return {escaped(measured_text(measured, "")), measured.value};
 }
 
+ReportCell measured_cell(const Damage& damage, const Measurement& size) {
+  return {escaped(bound_text(damage.cut_by_border, measured_text(size, ""))), size.value};
+}
+
 ReportCell plain_cell(double value) {
   return {escaped(value_text(value, "")), value};
 }

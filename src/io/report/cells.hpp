@@ -16,6 +16,8 @@ struct ReportCell {
 };
 
 ReportCell measured_cell(const Measurement& measured);
+/// Shows an area or a volume; with "≥" if the border cuts the damage.
+ReportCell measured_cell(const Damage& damage, const Measurement& size);
 /// Shows a value with three significant digits.
 ReportCell plain_cell(double value);
 ReportCell fixed_cell(double value, int decimals);

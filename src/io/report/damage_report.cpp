@@ -76,7 +76,8 @@ std::string sections(const DamageReportInput& input) {
             std::to_string(damages.size()) + " damages have a 3-D view.</p>\n";
   }
   for (std::size_t i = 0; i < damages.size(); ++i) {
-    html += damage_section(input, background, damages[i], {size, i < max_reliefs, std::to_string(damages[i].id), ""});
+    html += damage_section(input, background, damages[i],
+                           {size, i < max_reliefs, std::to_string(damages[i].id), "", false});
   }
   return html;
 }
@@ -86,7 +87,7 @@ std::string sections(const DamageReportInput& input) {
 std::string road_damage_section(const DamageReportInput& input, const Damage& damage, std::int64_t id) {
   validate(input);
   constexpr SectionSize size{{360, 30000}, 72};
-  return damage_section(input, background_of(input), damage, {size, true, std::to_string(id), "{{&where}}"});
+  return damage_section(input, background_of(input), damage, {size, true, std::to_string(id), "{{&where}}", true});
 }
 
 Frame damage_background(const DamageReportInput& input) {

@@ -39,16 +39,18 @@ std::string probabilities_text(const SeverityProbabilities& p) {
          number_text(percent * p.medium, 0) + "\u00a0/\u00a0" + number_text(percent * p.high, 0) + "\u00a0%";
 }
 
-Properties metric_properties(const Damage& damage, const DamageMetrics& metrics) {
+Properties metric_properties(const Damage& damage, const DamageMetrics& metrics, bool in_recording) {
+  const bool cut = damage.cut_by_border;
+  const std::string in_frame = in_recording && cut ? " in this frame" : "";
   const bool rises = damage.kind == DamageKind::protrusion;
   Properties properties{
       {rises ? "maximum height" : "maximum depth", measured_text(scaled(metrics.max_depth_m, mm), "mm")},
       {rises ? "mean height" : "mean depth", measured_text(scaled(metrics.mean_depth_m, mm), "mm")},
-      {"area", measured_text(metrics.area_m2, "m²")},
-      {"volume", measured_text(scaled(metrics.volume_m3, litres), "L")},
-      {"length × width", value_text(metrics.length_m, "") + " × " + value_text(metrics.width_m, "m")},
-      {"mean diameter", value_text(metrics.diameter_m, "m")},
-      {"quantity", quantity_text(metrics)}};
+      {"area" + in_frame, bound_text(cut, measured_text(metrics.area_m2, "m²"))},
+      {"volume" + in_frame, bound_text(cut, measured_text(scaled(metrics.volume_m3, litres), "L"))},
+      {"length × width" + in_frame, value_text(metrics.length_m, "") + " × " + value_text(metrics.width_m, "m")},
+      {"mean diameter" + in_frame, value_text(metrics.diameter_m, "m")},
+      {"quantity" + in_frame, quantity_text(metrics)}};
   const SeverityProbabilities& p = metrics.severity_probabilities;
   if (p.minor + p.low + p.medium + p.high > 0) {
     properties.emplace_back("minor / low / medium / high", probabilities_text(p));
@@ -60,8 +62,8 @@ Properties metric_properties(const Damage& damage, const DamageMetrics& metrics)
   return properties;
 }
 
-Properties properties_of(const Damage& damage) {
-  if (damage.metrics) return metric_properties(damage, *damage.metrics);
+Properties properties_of(const Damage& damage, bool in_recording) {
+  if (damage.metrics) return metric_properties(damage, *damage.metrics, in_recording);
   return {{"maximum disparity change", measured_text(damage.max_depth_px, "px")},
           {"centre (u, v)", pair_text(damage.centroid_px[0], damage.centroid_px[1], 0, "px")},
           {"size", std::to_string(damage.pixels) + "\u00a0px"},
@@ -143,7 +145,7 @@ std::string damage_section(const DamageReportInput& input, const cv::Mat& backgr
   fields["severity_text"] = damage.metrics ? severity_text(*damage.metrics) : "";
   fields["where"] = options.where;
   fields["note"] = note_of(damage);
-  fields["properties"] = properties_html(properties_of(damage));
+  fields["properties"] = properties_html(properties_of(damage, options.in_recording));
   fields["crop"] = crop_svg(background, map, damage, crop);
   fields["depth"] = depth_svg(map, damage, crop, {holes_of(input), &section, max_depth});
   fields["depth_unit"] = map.metric ? "mm" : "px";

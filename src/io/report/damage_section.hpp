@@ -23,8 +23,9 @@ inline constexpr std::size_t max_reliefs = 30;
 struct SectionOptions {
   SectionSize size;
   bool with_relief = true;
-  std::string id;     ///< shown number
-  std::string where;  ///< HTML under the title
+  std::string id;             ///< shown number
+  std::string where;          ///< HTML under the title
+  bool in_recording = false;  ///< other frames may show more of what the border cuts: its size is that in this frame
 };
 
 /// Returns the section of one damage: values, image, depths, cross-section and 3-D view. `background` is the background

@@ -27,9 +27,9 @@ std::vector<Column> metric_columns() {
           {"Distress", "", distress_cell},
           {"Severity", "", severity_cell},
           {"Depth", "mm", [](const D& d) { return measured_cell(scaled(d.metrics->max_depth_m, mm)); }},
-          {"Area", "m²", [](const D& d) { return measured_cell(d.metrics->area_m2); }},
+          {"Area", "m²", [](const D& d) { return measured_cell(d, d.metrics->area_m2); }},
           {"Confidence", "%", [](const D& d) { return fixed_cell(100 * d.confidence, 0); }},
-          {"Volume", "L", [](const D& d) { return measured_cell(scaled(d.metrics->volume_m3, litres)); }},
+          {"Volume", "L", [](const D& d) { return measured_cell(d, scaled(d.metrics->volume_m3, litres)); }},
           {"Length", "m", [](const D& d) { return plain_cell(d.metrics->length_m); }},
           {"Width", "m", [](const D& d) { return plain_cell(d.metrics->width_m); }},
           {"Distance", "m", [](const D& d) { return fixed_cell(d.metrics->distance_m, 2); }}};

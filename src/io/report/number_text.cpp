@@ -41,6 +41,10 @@ std::string measured_text(const Measurement& measured, const std::string& unit) 
   return with_unit(number_text(measured.value, decimals) + "\u00a0±\u00a0" + number_text(error, decimals), unit);
 }
 
+std::string bound_text(bool is_lower_bound, const std::string& text) {
+  return is_lower_bound ? "≥\u00a0" + text : text;
+}
+
 Measurement scaled(const Measurement& measured, double factor) {
   return {measured.value * factor, measured.std_error * factor};
 }

@@ -15,6 +15,9 @@ std::string value_text(double value, const std::string& unit);
 /// of decimals. Without a valid error only the value is shown.
 std::string measured_text(const Measurement& measured, const std::string& unit);
 
+/// Puts "≥" before the text of a value that is only a lower bound, as the area of what the border cuts is.
+std::string bound_text(bool is_lower_bound, const std::string& text);
+
 /// Converts a measurement to another unit.
 Measurement scaled(const Measurement& measured, double factor);
 

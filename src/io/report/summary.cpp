@@ -79,8 +79,12 @@ std::string total_cards(const Damages& damages, DamageKind kind) {
   const bool below = kind == DamageKind::depression;
   const Measurement area = total<&DamageMetrics::area_m2>(damages, kind);
   const Measurement volume = total<&DamageMetrics::volume_m3>(damages, kind);
-  return card(below ? "Below the road" : "Above the road", measured_text(area, "m²"),
-              escaped((below ? "missing volume " : "raised volume ") + measured_text(scaled(volume, litres), "L")));
+  const bool is_least = std::any_of(damages.begin(), damages.end(), [kind](const Damage& damage) {
+    return damage.kind == kind && damage.metrics && damage.cut_by_border;
+  });
+  return card(below ? "Below the road" : "Above the road", bound_text(is_least, measured_text(area, "m²")),
+              escaped((below ? "missing volume " : "raised volume ") +
+                      bound_text(is_least, measured_text(scaled(volume, litres), "L"))));
 }
 
 std::string deepest_card(const Damages& damages, std::size_t listed) {

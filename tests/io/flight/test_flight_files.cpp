@@ -278,5 +278,59 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
   EXPECT_NE(nothing.find("Not inspected"), std::string::npos);
 }
 
+// Of a rut that the border cuts in each of nine frames one shows 2.1 m², all together 8.5 m²: neither is all of it.
+TEST(FlightReport, CutDamageHasSizeOfAllFrames) {
+  DamageMap map = make_empty_damage_map(64, 48, "");
+  Damage in_frame = pothole(30, 24);
+  in_frame.cut_by_border = true;
+  in_frame.metrics->area_m2 = {2.1, 0.4};
+  in_frame.metrics->volume_m3 = {0.02, 0.004};
+  in_frame.metrics->unit = DistressUnit::square_metre;
+  in_frame.metrics->quantity = 2.1;
+  map.damages = {in_frame};
+  for (int v = 10; v < 30; ++v) {
+    for (int u = 20; u < 40; ++u) map.ids(u, v) = 1;
+  }
+  Frame left;
+  left.width = 64;
+  left.height = 48;
+  left.bytes.assign(64 * 48, 120);
+  DamageReportInput pictures{map};
+  pictures.left = left.view();
+  FlightReportInput input;
+  input.inspected = 9;
+  input.metric = true;
+  input.damages.resize(1);
+  RoadDamage& known = input.damages[0].damage;
+  known.id = 7;
+  known.sightings = 9;
+  known.frame_name = "frame 1";
+  known.best = in_frame;
+  known.best.metrics->area_m2 = {8.5, 1.5};
+  known.best.metrics->volume_m3 = {0.081, 0.015};
+  known.best.metrics->length_m = 11.3;
+  known.best.metrics->quantity = 8.5;
+  input.damages[0].section = road_damage_section(pictures, in_frame, 7);
+  const std::string html = flight_report(input);
+  const auto property = [](const std::string& name, const std::string& value) {
+    return "<dt>" + name + "</dt><dd>≥\u00a0" + value + "</dd>";
+  };
+  for (const std::string& part :
+       {property("area over all frames", "8.5\u00a0±\u00a01.5\u00a0m²"),
+        property("volume over all frames", "81\u00a0±\u00a015\u00a0L"),
+        property("length over all frames", "11.3\u00a0m"),
+        property("area in this frame", "2.1\u00a0±\u00a00.4\u00a0m²"),
+        property("volume in this frame", "20\u00a0±\u00a04\u00a0L"), std::string(">≥\u00a08.5\u00a0±\u00a01.5</td>"),
+        std::string(">≥\u00a08.50\u00a0m²</td>"), std::string("missing volume ≥\u00a081\u00a0±\u00a015\u00a0L")}) {
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  }
+  known.best.cut_by_border = in_frame.cut_by_border = false;
+  input.damages[0].section = road_damage_section(pictures, in_frame, 7);
+  const std::string whole = flight_report(input);
+  EXPECT_NE(whole.find("<dt>area</dt><dd>2.1\u00a0±\u00a00.4"), std::string::npos);
+  EXPECT_EQ(whole.find("over all frames"), std::string::npos);
+  EXPECT_EQ(whole.find("≥\u00a0"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace roadstereo::io

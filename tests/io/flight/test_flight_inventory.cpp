@@ -1,6 +1,8 @@
 // The inventory of a flight's damages.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -198,6 +200,107 @@ TEST(FlightInventory, DamageLongerThanViewHasAreaOfAll) {
   EXPECT_NEAR(metrics.volume_m3.value, 0.065, 0.001);
   EXPECT_NEAR(metrics.length_m, 13, 0.2);
   EXPECT_NEAR(metrics.quantity, 6.5, 0.1);
+}
+
+/// A damage that the border cuts, a rectangle of the road (x0, y0, x1, y1), metres.
+Damage cut_damage(const std::array<double, 4>& box_m, double area_m2, const Measurement& depth_m) {
+  Damage damage = pothole(100, 100);
+  damage.cut_by_border = true;
+  DamageMetrics& metrics = *damage.metrics;
+  const auto& [x0, y0, x1, y1] = box_m;
+  metrics.outline_m = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+  metrics.area_m2 = {area_m2, 0.1 * area_m2};
+  metrics.volume_m3 = {0.02 * area_m2, 0.004 * area_m2};
+  metrics.max_depth_m = depth_m;
+  metrics.length_m = std::max(x1 - x0, y1 - y0);
+  metrics.unit = DistressUnit::square_metre;
+  metrics.quantity = area_m2;
+  return damage;
+}
+
+/// What the inventory tells of one damage, seen from a camera at these places along the road.
+RoadDamage seen_from(const std::vector<double>& at_m, const std::vector<Damage>& sightings) {
+  FlightInventory inventory;
+  for (std::size_t i = 0; i < at_m.size(); ++i) {
+    FlightFrame frame = frame_along(static_cast<std::int64_t>(i), at_m[i], {});
+    frame.damages = {sightings[i]};
+    EXPECT_EQ(inventory.add(frame), std::vector<std::int64_t>{1});
+  }
+  return inventory.damages().at(0);
+}
+
+// A splinter of 0.027 m², whose outline has next to no area, and the hollow of 1 m × 1.2 m beside it, four times as
+// deep: their depths differ by 69 mm, 4.2 standard errors. They are neither 13 m² nor 598 m long.
+TEST(FlightInventory, SplinterOfOtherDepthIsNotExtended) {
+  const Damage splinter = cut_damage({1, 3, 1.003, 4}, 0.027, {0.025, 0.008});
+  const Damage hollow = cut_damage({0.5, 3, 1.5, 4.2}, 1.2, {0.094, 0.014});
+  for (const bool first : {true, false}) {
+    const RoadDamage damage = seen_from({0, 0}, first ? std::vector{splinter, hollow} : std::vector{hollow, splinter});
+    EXPECT_EQ(damage.frame, first ? 1 : 0) << "the larger one";
+    const DamageMetrics& metrics = *damage.best.metrics;
+    EXPECT_DOUBLE_EQ(metrics.area_m2.value, 1.2);
+    EXPECT_DOUBLE_EQ(metrics.area_m2.std_error, 0.12);
+    EXPECT_DOUBLE_EQ(metrics.volume_m3.value, 0.024);
+    EXPECT_DOUBLE_EQ(metrics.length_m, 1.2);
+    EXPECT_DOUBLE_EQ(metrics.quantity, 1.2);
+  }
+}
+
+// 2 m and then 4 m of a rut 0.5 m wide, from 3 m to 5 m and from 4 m to 8 m, the shorter one with the smaller error.
+// Together they are 5 m: the larger one's 2.1 m², which its outline of 2 m² is not quite, and 0.5 m² more.
+TEST(FlightInventory, SplinterOfCutDamageIsNotBest) {
+  Damage half = cut_damage({-0.25, 3, 0.25, 5}, 1, {0.02, 0.001});
+  Damage most = cut_damage({-0.25, 3, 0.25, 7}, 2.1, {0.021, 0.003});
+  most.metrics->diameter_m = std::sqrt(2.1 * 4 / 3.14159265);
+  for (const bool first : {true, false}) {
+    const RoadDamage damage = first ? seen_from({0, 1}, {half, most}) : seen_from({1, 0}, {most, half});
+    EXPECT_EQ(damage.frame, first ? 1 : 0);
+    const DamageMetrics& metrics = *damage.best.metrics;
+    EXPECT_NEAR(metrics.area_m2.value, 2.6, 0.03);
+    EXPECT_NEAR(metrics.area_m2.std_error, 0.26, 0.003);
+    EXPECT_NEAR(metrics.quantity, 2.6, 0.03);
+    EXPECT_NEAR(metrics.length_m, 5, 1e-9);
+    EXPECT_NEAR(metrics.diameter_m, std::sqrt(2.6 * 4 / 3.14159265), 0.02);
+    EXPECT_EQ(metrics.max_depth_m.value, 0.021);
+  }
+  half.metrics->area_m2.value = 1.1;  // more than half
+  for (const bool first : {true, false}) {
+    const RoadDamage damage = first ? seen_from({0, 1}, {half, most}) : seen_from({1, 0}, {most, half});
+    EXPECT_EQ(damage.frame, first ? 0 : 1) << "the smaller error";
+    EXPECT_NEAR(damage.best.metrics->area_m2.value, 2.6, 0.03) << "whichever frame is best";
+    EXPECT_NEAR(damage.best.metrics->area_m2.std_error, 0.24, 0.01) << "0.1 m² of 1.1 m²";
+    EXPECT_EQ(damage.best.metrics->max_depth_m.value, 0.02);
+  }
+}
+
+// Ten sightings of 4 m of a rut 0.5 m wide, 1 m apart, that lie 0.1 m to the left and to the right in turn: 13 m of
+// 0.5 m, although all together cover 0.7 m across.
+TEST(FlightInventory, ManySightingsMakeNoWiderRut) {
+  std::vector<double> at_m;
+  std::vector<Damage> sightings;
+  for (int i = 0; i < 10; ++i) {
+    const double x = i % 2 == 0 ? -0.35 : -0.15;
+    at_m.push_back(i);
+    sightings.push_back(cut_damage({x, 3, x + 0.5, 7}, 2, {0.02, 0.001}));
+  }
+  const DamageMetrics metrics = *seen_from(at_m, sightings).best.metrics;
+  EXPECT_NEAR(metrics.area_m2.value, 6.5, 0.1);
+  EXPECT_NEAR(metrics.length_m, 13, 0.1);
+}
+
+// 2 m and 1 m more of what is 1 m wide. The standard counts large potholes as several, small ones as one, and cracks by
+// their length.
+TEST(FlightInventory, QuantityOfCutDamageIsInItsUnit) {
+  const auto quantity_of = [](DistressUnit unit, double quantity) {
+    Damage one = cut_damage({0, 3, 1, 5}, 2, {0.05, 0.01});
+    one.metrics->unit = unit;
+    one.metrics->quantity = quantity;
+    return seen_from({0, 1}, {one, cut_damage({0, 3, 1, 5}, 1.9, {0.05, 0.01})}).best.metrics->quantity;
+  };
+  EXPECT_NEAR(quantity_of(DistressUnit::count, 4), 6, 0.05);
+  EXPECT_EQ(quantity_of(DistressUnit::count, 1), 1);
+  EXPECT_NEAR(quantity_of(DistressUnit::metre, 2), 3, 1e-9);
+  EXPECT_NEAR(quantity_of(DistressUnit::square_metre, 2), 3, 0.05);
 }
 
 // Where no link connects two pieces, the pictures decide; boxes there do not overlap.

@@ -103,6 +103,7 @@ TEST(RoadSegments, ShareDamageThatGoesOn) {
   rut.id = 1;
   rut.first_frame = 1;
   rut.last_frame = 5;
+  rut.ahead_m = 5;
   rut.best.cut_by_border = true;
   DamageMetrics& metrics = rut.best.metrics.emplace();
   metrics.area_m2 = {18, 1};
@@ -119,6 +120,15 @@ TEST(RoadSegments, ShareDamageThatGoesOn) {
   segments = road_segments(frames, {{rut}});
   EXPECT_EQ(segments[1].damages, 1);
   EXPECT_EQ(segments[2].damages, 0);
+  // On the way back, 60 m farther, it is seen best, and for the last time.
+  for (int i = 7; i <= 12; ++i) frames.push_back(frame_at(i, 10.0 * i));
+  rut.frame = 10;
+  rut.last_frame = 11;
+  rut.station_m = 20;
+  segments = road_segments(frames, {{rut}});
+  EXPECT_EQ(segments[0].damages, 1);
+  EXPECT_EQ(segments[1].damages, 1);
+  for (std::size_t k = 2; k < segments.size(); ++k) EXPECT_EQ(segments[k].damages, 0) << k;
 }
 
 TEST(RoadSegments, RejectLengthsWithoutSegments) {

@@ -249,13 +249,13 @@ TEST(GeoJson, NoFramesGiveEmptyCollection) {
   for (const NamedText& file : geojson_files({})) expect_rfc7946(file.text, 0);
 }
 
-TEST(RoadDamagesCsv, HasPlaceAndTenColumns) {
+TEST(RoadDamagesCsv, HasPlaceAndElevenColumns) {
   EXPECT_EQ(road_damages_csv_names(),
             "id,lat_deg,lon_deg,distress,severity,max_depth_m,max_depth_m_stderr,area_m2,area_m2_stderr,quantity,unit,"
-            "confidence,picture\r\n");
+            "confidence,cut_by_border,picture\r\n");
   EXPECT_EQ(road_damages_csv_rows(std::span(layers().damages).first(1)),
-            "5,0,8,pothole,medium,0.0321,0.0015,0.25,0.01,1,count,0.875,damages/00005.jpg\r\n");
-  EXPECT_EQ(road_damages_csv_rows(std::span(layers().damages).last(1)), "9,,,unknown,unknown,,,,,,,0,\r\n");
+            "5,0,8,pothole,medium,0.0321,0.0015,0.25,0.01,1,count,0.875,true,damages/00005.jpg\r\n");
+  EXPECT_EQ(road_damages_csv_rows(std::span(layers().damages).last(1)), "9,,,unknown,unknown,,,,,,,0,false,\r\n");
 }
 
 TEST(GeoJson, PositionsHaveSevenDecimals) {
