@@ -52,7 +52,8 @@ Grid grid_at(const StepProfile& steps, std::size_t phase) {
     grid.steps.between += steps[k];
     grid.steps.beside += beside;
   }
-  if (excesses.empty()) return grid;
+  constexpr std::size_t min_borders = 8;  // fewer differ by chance
+  if (excesses.size() < min_borders) return {};
   grid.excess = upper_median(std::vector(excesses));
   for (double& excess : excesses) excess -= grid.excess;
   constexpr double of_median = 1.2533;  // √(π/2): standard error of a median over that of a mean

@@ -5,35 +5,12 @@
 #include <limits>
 #include <numbers>
 
+#include "core/convex_hull.hpp"
+
 namespace roadstereo {
 namespace {
 
 using Point = std::array<double, 2>;
-
-/// Cross product of b − a and c − a: positive for a counterclockwise turn.
-double cross(const Point& a, const Point& b, const Point& c) {
-  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-/// Andrew's monotone chain. Corners are counterclockwise; the first is not repeated.
-std::vector<Point> convex_hull(std::vector<Point> points) {
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  if (points.size() < 3) return points;
-  std::vector<Point> hull;
-  hull.reserve(2 * points.size());
-  const auto add_chain = [&hull](auto first, auto last) {
-    const std::size_t start = hull.size();
-    for (auto point = first; point != last; ++point) {
-      while (hull.size() >= start + 2 && cross(hull[hull.size() - 2], hull.back(), *point) <= 0) hull.pop_back();
-      hull.push_back(*point);
-    }
-    hull.pop_back();
-  };
-  add_chain(points.begin(), points.end());
-  add_chain(points.rbegin(), points.rend());
-  return hull;
-}
 
 /// Sides of the bounding rectangle along and across the direction (c, s).
 std::array<double, 2> sides_along(const std::vector<Point>& hull, double c, double s) {

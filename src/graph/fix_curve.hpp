@@ -20,6 +20,7 @@ class FixCurve {
   FixCurve(std::vector<PositionFix> fixes, double max_gap_s);
 
   const std::vector<PositionFix>& fixes() const { return fixes_; }
+  const Eigen::Vector3d& position(std::size_t fix) const { return positions_[fix]; }
 
   /// Index of the fix before a time; nullopt outside or in a gap.
   std::optional<std::size_t> segment(double time_s) const;

@@ -22,7 +22,7 @@ struct TimedPose {
 /// rate. Before the first and after the last frame the motion goes on as it is there.
 class PoseCurve {
  public:
-  /// Leaves out poses whose time is not after that of the one before. There must be a pose.
+  /// Leaves out as few poses as possible whose times are not in order. There must be a pose.
   explicit PoseCurve(const std::vector<TimedPose>& poses);
 
   const std::vector<TimedPose>& nodes() const { return nodes_; }

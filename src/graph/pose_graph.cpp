@@ -5,7 +5,6 @@
 #include <map>
 #include <memory>
 #include <numeric>
-#include <utility>
 
 #include "core/degrees.hpp"
 #include "core/order_statistics.hpp"
@@ -55,8 +54,9 @@ class Optimiser {
       constexpr int most_solutions = 4;
       constexpr double settled = 0.8;  // of the noise before; it falls while the time offset is being found
       for (int i = 0; i < most_solutions; ++i) {
-        const double before_m = std::exchange(noise_m_, noise_of_fixes());
-        if (i > 0 && noise_m_ > settled * before_m) break;
+        const double after_m = noise_of_fixes();
+        if (i > 0 && after_m > settled * noise_m_) break;
+        noise_m_ = after_m;
         problem = solve(taken);
       }
       time_offset_found_ = finds_time_offset(*problem);
@@ -75,7 +75,7 @@ class Optimiser {
       }
     }
     fill_trajectory(*problem);
-    if (has_track()) fill_track(*problem);
+    if (has_track() && !observations_.empty()) fill_track(*problem);
     return std::move(result_);
   }
 
@@ -287,9 +287,11 @@ class Optimiser {
     return count;
   }
 
-  /// Standard deviation per axis. Of a distance in two dimensions the median is 1.18 of them.
+  /// Standard deviation per axis. Of a distance in two dimensions the median is 1.18 of them. As before if no frame has
+  /// a position.
   double noise_of_fixes() const {
     constexpr double rayleigh_median = 1.1774, least_m = 0.01;  // of the best receivers
+    if (observations_.empty()) return noise_m_;
     return std::max(upper_median(distances()) / rayleigh_median, least_m);
   }
 

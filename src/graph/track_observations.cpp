@@ -18,14 +18,9 @@ std::vector<TrackObservation> fixes_along(const PoseCurve& piece, const FixCurve
     const double time_s = fix->time_s - time_offset_s;
     if (!piece.covers(time_s, max_gap_s)) continue;
     const bool has_z = !std::isnan(fix->position_m[2]);
-    found.push_back({&piece,
-                     piece.nearest(time_s),
-                     fix->time_s,
-                     {fix->position_m[0], fix->position_m[1], has_z ? fix->position_m[2] : 0},
-                     fix->horizontal_sd_m,
-                     fix->vertical_sd_m,
-                     has_z,
-                     false});
+    const Eigen::Vector3d& position = curve.position(static_cast<std::size_t>(fix - fixes.begin()));
+    found.push_back(
+        {&piece, piece.nearest(time_s), fix->time_s, position, fix->horizontal_sd_m, fix->vertical_sd_m, has_z, false});
   }
   return found;
 }

@@ -19,7 +19,6 @@ namespace roadstereo::io {
 namespace {
 
 constexpr std::size_t max_bytes = std::size_t{1} << 30U;
-constexpr int min_side = 32;
 constexpr double kitti_steps = 256;  // per pixel of disparity
 
 cv::Mat decode(const std::string& path, const std::vector<std::uint8_t>& bytes) {
@@ -159,7 +158,7 @@ Frame decode_frame(const std::string& path, const std::vector<std::uint8_t>& byt
   }
   if (is_tiff(bytes)) check_tiff_depth(path, check_tiff(path, bytes));
   ImageHeader header;
-  const cv::Mat mat = decode_checked(path, bytes, min_side, header);
+  const cv::Mat mat = decode_checked(path, bytes, min_image_side, header);
   check_frame_depth(path, mat);
   return frame_from(mat, order_of(mat));
 }

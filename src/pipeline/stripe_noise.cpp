@@ -14,6 +14,11 @@ namespace {
 
 constexpr int band = 16;
 
+/// Set of the band of a sample, of which one in `step` lines is taken.
+int band_set(int at, int step) {
+  return at / step / std::max(1, band / step) % 2;
+}
+
 /// Second differences of a line, a row or a column, summed over the two sets of bands.
 struct LineSums {
   std::array<int, 2> sum{}, count{};
@@ -32,7 +37,7 @@ std::vector<LineSums> sum_columns(ImageView<const std::int16_t> image, ImageView
   for (int v = 0; v < image.height(); v += step) {
     const std::int16_t* const level = image.row(v);
     const std::uint8_t* const is_road = road.row(v);
-    const int set = v / band % 2;
+    const int set = band_set(v, step);
     for (int u = 1; u + 1 < image.width(); ++u) {
       columns[static_cast<std::size_t>(u)].add(set, level[u - 1], level[u], level[u + 1],
                                                (is_road[u - 1] & is_road[u] & is_road[u + 1]) != 0);
@@ -49,7 +54,7 @@ std::vector<LineSums> sum_rows(ImageView<const std::int16_t> image, ImageView<co
   for (int v = 1; v + 1 < image.height(); ++v) {
     LineSums& sums = rows[static_cast<std::size_t>(v)];
     for (int u = 0; u < image.width(); u += step) {
-      sums.add(u / band % 2, image(u, v - 1), image(u, v), image(u, v + 1),
+      sums.add(band_set(u, step), image(u, v - 1), image(u, v), image(u, v + 1),
                (road(u, v - 1) & road(u, v) & road(u, v + 1)) != 0);
     }
   }

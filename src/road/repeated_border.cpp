@@ -41,7 +41,7 @@ class TexturedPlaces {
  public:
   TexturedPlaces(const Lines& lines, int line) : lines_(lines), line_(line) {
     constexpr int min_step = 2 * grey_scale;
-    const int margin = lines.length() / 8, step = std::max(1, lines.length() / most);
+    const int margin = std::max(1, lines.length() / 8), step = std::max(1, lines.length() / most);
     for (int at = margin; at + margin < lines.length() && count_ < most; at += step, ++looked_at_) {
       const int difference = std::abs(lines.level(line, at) - lines.level(line, at + 1));
       if (difference < min_step) continue;

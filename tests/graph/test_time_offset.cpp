@@ -110,5 +110,33 @@ TEST(TimeOffset, IsFoundWhereSpeedChanges) {
   }
 }
 
+/// A receiver that gives an altitude once in ten fixes.
+TEST(TrackFixes, AltitudesThatLackLieBetweenTheOthers) {
+  PoseGraphInput input = Drive{at_random_speed, 0.05}.input();
+  for (std::size_t i = 0; i < input.fixes.size(); ++i) {
+    input.fixes[i].position_m[2] = i % 10 == 0 ? 500 : std::nan("");
+  }
+  const PoseGraphResult result = optimise_poses(input);
+  ASSERT_TRUE(result.track) << result.track_unused;
+  EXPECT_NEAR(result.trajectory.frames[100].camera_to_world[11], 500, 0.1);
+}
+
+/// One wrong time of a frame, the first or one between, leaves out that frame alone.
+TEST(TrackFixes, WrongTimeOfFrameCostsThatFrame) {
+  for (const std::size_t wrong : {std::size_t{0}, std::size_t{100}}) {
+    PoseGraphInput input = Drive{at_random_speed, 0.05}.input();
+    input.times_s[wrong] = 1e6;
+    const PoseGraphResult result = optimise_poses(input);
+    ASSERT_TRUE(result.track) << result.track_unused;
+    // 20 fixes of 0.05 m on either side: five times the standard error of their mean.
+    for (const std::size_t frame : {std::size_t{20}, std::size_t{180}}) {
+      EXPECT_NEAR(result.trajectory.frames[frame].camera_to_world[3], at_random_speed(0.1 * static_cast<double>(frame)),
+                  0.06)
+          << wrong;
+    }
+    EXPECT_LT(result.track->rms_m, 0.1);
+  }
+}
+
 }  // namespace
 }  // namespace roadstereo

@@ -351,6 +351,21 @@ TEST(PairHealth, RowsThatScatterSpoilDepth) {
   EXPECT_FALSE(health.depth_is_trusted());
 }
 
+/// Sides at which one line in 32 is taken, where whole bands have one.
+TEST(PairHealth, StripesOfLargePicturesAreMeasured) {
+  constexpr int width = 300;
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0, 2 * 16);
+  std::vector<std::int16_t> of_column(width);
+  for (std::int16_t& level : of_column) level = static_cast<std::int16_t>(std::lround(1600 + noise(random)));
+  for (const int height : {4095, 4096, 8192}) {
+    GreyImage grey(width, height);
+    for (int v = 0; v < height; ++v) std::copy(of_column.begin(), of_column.end(), grey.row(v));
+    const Image<std::uint8_t> road(width, height, 255);
+    EXPECT_NEAR(stripe_variance(grey, road), 4 * 256, 0.3 * 4 * 256) << height;  // 300 columns tell it to 12 %
+  }
+}
+
 TEST(PairHealth, NoiseOfPixelsAndStripesAddUp) {
   PairHealth health;
   health.noise_share = 0.2;

@@ -5,34 +5,9 @@
 #include <cstddef>
 #include <utility>
 
+#include "core/convex_hull.hpp"
+
 namespace roadstereo::io {
-namespace {
-
-using Point = std::array<double, 2>;
-
-/// Vertices of the convex hull, counterclockwise (monotone chain).
-Outline convex_hull(Outline points) {
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  if (points.size() < 3) return points;
-  const auto turns_right = [](const Point& a, const Point& b, const Point& c) {
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) <= 0;
-  };
-  Outline hull;
-  const auto add_chain = [&](auto first, auto last) {
-    const std::size_t start = hull.size();
-    for (auto point = first; point != last; ++point) {
-      while (hull.size() >= start + 2 && turns_right(hull[hull.size() - 2], hull.back(), *point)) hull.pop_back();
-      hull.push_back(*point);
-    }
-    hull.pop_back();
-  };
-  add_chain(points.begin(), points.end());
-  add_chain(points.rbegin(), points.rend());
-  return hull;
-}
-
-}  // namespace
 
 void OutlineUnion::add(const Outline& outline) {
   for (const std::array<int, 2>& cell : cells_of(outline)) {
@@ -64,9 +39,10 @@ std::array<double, 2> OutlineUnion::axis() const {
 
 double OutlineUnion::extent_m(const std::array<double, 2>& along) const {
   if (hull_.empty()) return 0;
-  const auto at = [&](const Point& point) { return point[0] * along[0] + point[1] * along[1]; };
-  const auto [first, last] =
-      std::minmax_element(hull_.begin(), hull_.end(), [&](const Point& a, const Point& b) { return at(a) < at(b); });
+  const auto at = [&](const std::array<double, 2>& point) { return point[0] * along[0] + point[1] * along[1]; };
+  const auto [first, last] = std::minmax_element(
+      hull_.begin(), hull_.end(),
+      [&](const std::array<double, 2>& a, const std::array<double, 2>& b) { return at(a) < at(b); });
   return at(*last) - at(*first);
 }
 

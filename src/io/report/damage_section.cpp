@@ -48,9 +48,10 @@ Properties metric_properties(const Damage& damage, const DamageMetrics& metrics,
       {rises ? "mean height" : "mean depth", measured_text(scaled(metrics.mean_depth_m, mm), "mm")},
       {"area" + in_frame, bound_text(cut, measured_text(metrics.area_m2, "m²"))},
       {"volume" + in_frame, bound_text(cut, measured_text(scaled(metrics.volume_m3, litres), "L"))},
-      {"length × width" + in_frame, value_text(metrics.length_m, "") + " × " + value_text(metrics.width_m, "m")},
-      {"mean diameter" + in_frame, value_text(metrics.diameter_m, "m")},
-      {"quantity" + in_frame, quantity_text(metrics)}};
+      {"length × width" + in_frame,
+       bound_text(cut, value_text(metrics.length_m, "") + " × " + value_text(metrics.width_m, "m"))},
+      {"mean diameter" + in_frame, bound_text(cut, value_text(metrics.diameter_m, "m"))},
+      {"quantity" + in_frame, bound_text(cut, quantity_text(metrics))}};
   const SeverityProbabilities& p = metrics.severity_probabilities;
   if (p.minor + p.low + p.medium + p.high > 0) {
     properties.emplace_back("minor / low / medium / high", probabilities_text(p));
