@@ -125,13 +125,11 @@ RobustNormal depths_around(const DepthField& field, const BoxMask& region, int n
   return robust_normal(around);
 }
 
-HalvesAround halves_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii,
-                           float max_rise) {
+HalvesAround halves_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii) {
   const Octants octants(region.box());
   std::array<std::vector<float>, Octants::count> depths;
-  visit_between(field, region, near_cells, far_side(region, near_cells, band_radii), [&](int i, int j, float depth) {
-    if (depth > -max_rise) depths[octants.of(i, j)].push_back(depth);
-  });
+  visit_between(field, region, near_cells, far_side(region, near_cells, band_radii),
+                [&](int i, int j, float depth) { depths[octants.of(i, j)].push_back(depth); });
   HalvesAround halves;
   std::vector<float> half;
   for (std::size_t first = 0; first < Octants::count; ++first) {

@@ -38,7 +38,7 @@ TEST(HalvesAround, TellRoadFromVerge) {
   for (int j = 40; j <= 60; ++j) {
     for (int i = 40; i <= 60; ++i) region.set(i, j);
   }
-  const HalvesAround halves = halves_around({depth, allowed, visited}, region, 3, 1, 2);
+  const HalvesAround halves = halves_around({depth, allowed, visited}, region, 3, 1);
   std::size_t samples = 0;
   double least = 1e9, largest = 0;
   for (const RobustNormal& half : halves) {
@@ -51,9 +51,6 @@ TEST(HalvesAround, TellRoadFromVerge) {
   EXPECT_EQ(least, 0);
   EXPECT_GE(largest, 1) << "half of a verge";
   EXPECT_LT(depths_around({depth, allowed, visited}, region, 3, 1).sigma, largest);
-  for (const RobustNormal& half : halves_around({depth, allowed, visited}, region, 3, 1, 0.5F)) {
-    EXPECT_LE(half.sigma, 0.8 * 1.4827) << "what rises by 1 is left out: 1 and 0.2 remain";
-  }
 }
 
 }  // namespace
