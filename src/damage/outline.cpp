@@ -138,7 +138,7 @@ HalvesAround halves_around(const DepthField& field, const BoxMask& region, int n
       const std::vector<float>& octant = depths[k % Octants::count];
       half.insert(half.end(), octant.begin(), octant.end());
     }
-    halves[first] = robust_normal_of_lower(half);
+    halves[first] = robust_normal(half);
   }
   return halves;
 }

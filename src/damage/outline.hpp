@@ -23,8 +23,7 @@ BoxMask flood_fill(const DepthField& field, const ConnectedComponent& seeds, flo
 /// `band_radii` times the radius √(area / π) of the region, at least 3 cells.
 RobustNormal depths_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii);
 
-/// The same for the halves of the band, each of four octants around the region, by the shallower of their depths: the
-/// deeper ones may be of a hollow beside it.
+/// The same for the halves of the band, each of four octants around the region.
 using HalvesAround = std::array<RobustNormal, Octants::count>;
 HalvesAround halves_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii);
 

@@ -22,14 +22,4 @@ inline RobustNormal robust_normal(std::vector<float>& values) {
   return {median, gaussian_mad * binned_median(values), values.size()};
 }
 
-/// The same with the deviations of the values below the median alone: those above it may be of something else.
-inline RobustNormal robust_normal_of_lower(std::vector<float>& values) {
-  if (values.empty()) return {};
-  const std::size_t samples = values.size();
-  const float median = binned_median(values);
-  std::erase_if(values, [median](float value) { return value > median; });
-  for (float& value : values) value = median - value;
-  return {median, gaussian_mad * binned_median(values), samples};
-}
-
 }  // namespace roadstereo
