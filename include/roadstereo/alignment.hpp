@@ -40,8 +40,8 @@ struct RowSample {
 };
 
 /// Matches the points from which `measure_row_alignment` determines the offset: at most 135, spread over the image.
-/// Pixels of the left image where `mask` (W×H, or empty) is not 0 and a black border are left out. Throws Error when
-/// the sizes differ.
+/// Pixels of the left image where `mask` (W×H, or empty) is not 0 and a black or repeated border are left out. Throws
+/// Error when the sizes differ.
 std::vector<RowSample> sample_row_alignment(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                             int threads = 0, ImageView<const std::uint8_t> mask = {});
 

@@ -100,7 +100,7 @@ struct DamageEvidence {
   /// Depth of the floor minus the median of the surrounding band, or of that half of it where the contrast is least, in
   /// robust standard deviations there, or of the road around (three bands, or all intact road) if these are larger
   double contrast_sigmas = 0;
-  double significance = 0;  ///< times the root of the support windows inside, a cell by its share of the floor squared
+  double significance = 0;  ///< contrast · √(support windows inside, a cell counting (depth / depth of the floor)²)
   double steepness = 0;     ///< maximum of the mean slope on a contour, relative to a cone of the same area and depth
   double road_share = 0;    ///< share of the band around that is road, 0 … 1
   double border_share = 0;  ///< share of the outline on the border of what both cameras see, 0 … 1

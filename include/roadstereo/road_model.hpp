@@ -62,9 +62,9 @@ struct RoadModelEstimate {
 /// Finds the road from the images alone: the plane with the most evidence over all pixels of the downsampled pair, then
 /// a robust fit to correspondences along it. Never guesses: when the evidence is poor, the status is `none`.
 /// `calibration`, when given, tells walls from roads by their real tilt, and is needed for an expected height or pitch.
-/// Pixels where `mask` (W×H, or empty) is not 0 and a black border take no part. Near the `last` frame's road, if it is
-/// given, a plane needs less evidence than elsewhere. Throws Error when the images look swapped (the matches lie at
-/// negative disparities), when the sizes differ and when an option is out of range.
+/// Pixels where `mask` (W×H, or empty) is not 0 and a black or repeated border take no part. Near the `last` frame's
+/// road, if it is given, a plane needs less evidence than elsewhere. Throws Error when the images look swapped (the
+/// matches lie at negative disparities), when the sizes differ and when an option is out of range.
 RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,
                                       const std::optional<StereoCalibration>& calibration,
                                       const RoadModelOptions& options, int threads = 0,

@@ -79,14 +79,14 @@ double road_share(const SearchInput& input, const Candidate& candidate, float de
 /// Contrast of a depth to the surroundings, in standard deviations: to the band around a region, or to the half of the
 /// band where it is least. A part of a verge is no rougher than the rest of it, which may be less than half of the
 /// band.
-double least_contrast(double depth, const RobustNormal& around, const HalvesAround& halves, double noise) {
-  constexpr std::size_t min_samples = 12, min_share = 4;  // of half of the band: less is not seen
-  const auto contrast_to = [&](const RobustNormal& band) {
-    return (depth - band.median) / std::max(band.sigma, noise);
+double least_contrast(double depth, const BandAround& band, double noise) {
+  constexpr std::size_t min_samples = 12, min_share = 8;  // 1/8 of the band: of half of it, less is not seen
+  const auto contrast_to = [&](const RobustNormal& part) {
+    return (depth - part.median) / std::max(part.sigma, noise);
   };
-  double least = contrast_to(around);
-  for (const RobustNormal& half : halves) {
-    if (half.samples < min_samples || 2 * min_share * half.samples < around.samples) continue;
+  double least = contrast_to(band.whole);
+  for (const RobustNormal& half : band.halves) {
+    if (half.samples < min_samples || min_share * half.samples < band.whole.samples) continue;
     least = std::min(least, contrast_to(half));
   }
   return least;
@@ -141,17 +141,15 @@ void add_evidence(const SearchInput& input, SearchImages& images, Candidate& can
   constexpr double band_radii = 1, wide_band_radii = 3;
   constexpr double min_noise_px = 1e-6;  // of maps without noise
   const std::vector<float> inside = depths_inside(images, candidate);
-  const RobustNormal around = depths_around(images.field(), candidate.cells, near_cells, band_radii);
+  const BandAround around = band_around(images.field(), candidate.cells, near_cells, band_radii);
   // In the distance, on gravel or in the shade the road may be noisier than here.
   const RobustNormal wide = depths_around(images.field(), candidate.cells, near_cells, wide_band_radii);
   const bool is_known = wide.samples >= candidate.size;
   const double of_road = input.depth_cells.noise, noise = is_known ? std::min(of_road, wide.sigma) : of_road;
   const double window = input.image_edges.window_radius, floor = floor_of(inside);
-  const double samples = floor_cells(inside, around.median, floor) / (std::numbers::pi * window * window);
+  const double samples = floor_cells(inside, around.whole.median, floor) / (std::numbers::pi * window * window);
   DamageEvidence& evidence = candidate.evidence;
-  evidence.contrast_sigmas =
-      least_contrast(floor, around, halves_around(images.field(), candidate.cells, near_cells, band_radii),
-                     std::max(noise, min_noise_px));
+  evidence.contrast_sigmas = least_contrast(floor, around, std::max(noise, min_noise_px));
   evidence.significance = evidence.contrast_sigmas * std::sqrt(std::max(1.0, samples));
   evidence.road_share = road_share(input, candidate, binned_median(inside), images);
   measure_border(candidate.cells, input.view, input.gaps.unseen, evidence);

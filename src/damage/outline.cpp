@@ -111,7 +111,7 @@ BoxMask near_gaps(const Image<std::uint8_t>& valid, const CellBox& box, int wind
   return near;
 }
 
-/// Far side of the band of depths_around(), cells from the region.
+/// Far side of the band around a region, cells from it.
 int far_side(const BoxMask& region, int near_cells, double band_radii) {
   constexpr int min_band_cells = 3;
   const double radius = std::sqrt(static_cast<double>(cell_count(region)) / std::numbers::pi);
@@ -125,22 +125,26 @@ RobustNormal depths_around(const DepthField& field, const BoxMask& region, int n
   return robust_normal(around);
 }
 
-HalvesAround halves_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii) {
+BandAround band_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii) {
   const Octants octants(region.box());
   std::array<std::vector<float>, Octants::count> depths;
   visit_between(field, region, near_cells, far_side(region, near_cells, band_radii),
                 [&](int i, int j, float depth) { depths[octants.of(i, j)].push_back(depth); });
-  HalvesAround halves;
-  std::vector<float> half;
-  for (std::size_t first = 0; first < Octants::count; ++first) {
-    half.clear();
-    for (std::size_t k = first; k < first + Octants::count / 2; ++k) {
+  std::vector<float> values;
+  const auto normal_of = [&](std::size_t first, std::size_t count) {
+    values.clear();
+    for (std::size_t k = first; k < first + count; ++k) {
       const std::vector<float>& octant = depths[k % Octants::count];
-      half.insert(half.end(), octant.begin(), octant.end());
+      values.insert(values.end(), octant.begin(), octant.end());
     }
-    halves[first] = robust_normal(half);
+    return robust_normal(values);
+  };
+  BandAround band;
+  band.whole = normal_of(0, Octants::count);
+  for (std::size_t first = 0; first < Octants::count; ++first) {
+    band.halves[first] = normal_of(first, Octants::count / 2);
   }
-  return halves;
+  return band;
 }
 
 float floor_of(std::vector<float> depths) {

@@ -23,9 +23,12 @@ BoxMask flood_fill(const DepthField& field, const ConnectedComponent& seeds, flo
 /// `band_radii` times the radius √(area / π) of the region, at least 3 cells.
 RobustNormal depths_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii);
 
-/// The same for the halves of the band, each of four octants around the region.
-using HalvesAround = std::array<RobustNormal, Octants::count>;
-HalvesAround halves_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii);
+/// The same band, and its halves, each of four octants around the region.
+struct BandAround {
+  RobustNormal whole;
+  std::array<RobustNormal, Octants::count> halves;
+};
+BandAround band_around(const DepthField& field, const BoxMask& region, int near_cells, double band_radii);
 
 /// Depth of the floor of a hollow: 75th percentile of those depths that are deeper than half of it, robust against
 /// single outliers and independent of how much of the hollow they cover.

@@ -28,7 +28,7 @@ TEST(Octants, HaveProportionsOfBox) {
 }
 
 /// To the left of a region is a smooth road at 0.2, to its right a rough verge: ±1 in turn.
-TEST(HalvesAround, TellRoadFromVerge) {
+TEST(BandAround, HalvesTellRoadFromVerge) {
   Image<float> depth(100, 100, 0.2F);
   for (int j = 0; j < 100; ++j) {
     for (int i = 51; i < 100; ++i) depth(i, j) = (i + j) % 2 == 0 ? 1.0F : -1.0F;
@@ -38,19 +38,20 @@ TEST(HalvesAround, TellRoadFromVerge) {
   for (int j = 40; j <= 60; ++j) {
     for (int i = 40; i <= 60; ++i) region.set(i, j);
   }
-  const HalvesAround halves = halves_around({depth, allowed, visited}, region, 3, 1);
+  const BandAround band = band_around({depth, allowed, visited}, region, 3, 1);
   std::size_t samples = 0;
   double least = 1e9, largest = 0;
-  for (const RobustNormal& half : halves) {
+  for (const RobustNormal& half : band.halves) {
     samples += half.samples;
     least = std::min(least, half.sigma);
     largest = std::max(largest, half.sigma);
   }
-  EXPECT_EQ(samples, 4 * depths_around({depth, allowed, visited}, region, 3, 1).samples) << "each octant is in four";
-  EXPECT_NEAR(halves[2].median, 0.2, 1e-6) << "to the left";
+  EXPECT_EQ(samples, 4 * band.whole.samples) << "each octant is in four";
+  EXPECT_NEAR(band.halves[2].median, 0.2, 1e-6) << "to the left";
   EXPECT_EQ(least, 0);
   EXPECT_GE(largest, 1) << "half of a verge";
-  EXPECT_LT(depths_around({depth, allowed, visited}, region, 3, 1).sigma, largest);
+  EXPECT_LT(band.whole.sigma, largest);
+  EXPECT_EQ(depths_around({depth, allowed, visited}, region, 3, 1).sigma, band.whole.sigma);
 }
 
 }  // namespace

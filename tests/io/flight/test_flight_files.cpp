@@ -206,19 +206,25 @@ TEST(FlightTables, FormulasOfNamesAreDefused) {
   EXPECT_EQ(frames_csv_row(frame).substr(0, 6), "3,'-2.");
 }
 
-TEST(FlightReport, IsCompleteAndSelfContained) {
-  DamageMap map = make_empty_damage_map(64, 48, "");
-  Damage damage = pothole(30, 24);
-  map.damages = {damage};
-  for (int v = 10; v < 30; ++v) {
-    for (int u = 20; u < 40; ++u) map.ids(u, v) = 1;
+/// A grey frame of 64×48 pixels with a damage in it.
+struct PicturesOfDamage {
+  explicit PicturesOfDamage(const Damage& damage) {
+    map.damages = {damage};
+    for (int v = 10; v < 30; ++v) std::fill_n(map.ids.row(v) + 20, 20, std::uint16_t{1});
+    left.width = 64;
+    left.height = 48;
+    left.bytes.assign(64 * 48, 120);
+    pictures.left = left.view();
   }
+
+  DamageMap map = make_empty_damage_map(64, 48, "");
   Frame left;
-  left.width = 64;
-  left.height = 48;
-  left.bytes.assign(64 * 48, 120);
   DamageReportInput pictures{map};
-  pictures.left = left.view();
+};
+
+TEST(FlightReport, IsCompleteAndSelfContained) {
+  Damage damage = pothole(30, 24);
+  const PicturesOfDamage frame(damage);
   FlightReportInput input;
   input.title = "a <flight>";
   input.head = {{"Road", "B 27 <north>"}};
@@ -226,7 +232,7 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
   input.notices = {"1 of 3 frames have no result"};
   input.curves = {{0, 1, 2}, true, {1, FlightFrame::unknown, 2}, {3, 3, 3}, {0.1, 0.2, 0.1}};
   input.inspected = 3;
-  input.thumbnails = {{"first", frame_thumbnail(left.view(), map)}};
+  input.thumbnails = {{"first", frame_thumbnail(frame.left.view(), frame.map)}};
   input.damages.resize(1);
   RoadDamage& known = input.damages[0].damage;
   known.id = 7;
@@ -235,7 +241,7 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
   known.best = damage;
   known.position = GeoPosition{48.5, 9.25, 100, 0};
   known.station_m = 33;
-  input.damages[0].section = road_damage_section(pictures, damage, 7);
+  input.damages[0].section = road_damage_section(frame.pictures, damage, 7);
   RoadDamage candidate = known;
   candidate.id = 8;
   input.candidates = {candidate};
@@ -280,23 +286,13 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
 
 // Of a rut that the border cuts in each of nine frames one shows 2.1 m², all together 8.5 m²: neither is all of it.
 TEST(FlightReport, CutDamageHasSizeOfAllFrames) {
-  DamageMap map = make_empty_damage_map(64, 48, "");
   Damage in_frame = pothole(30, 24);
   in_frame.cut_by_border = true;
   in_frame.metrics->area_m2 = {2.1, 0.4};
   in_frame.metrics->volume_m3 = {0.02, 0.004};
   in_frame.metrics->unit = DistressUnit::square_metre;
   in_frame.metrics->quantity = 2.1;
-  map.damages = {in_frame};
-  for (int v = 10; v < 30; ++v) {
-    for (int u = 20; u < 40; ++u) map.ids(u, v) = 1;
-  }
-  Frame left;
-  left.width = 64;
-  left.height = 48;
-  left.bytes.assign(64 * 48, 120);
-  DamageReportInput pictures{map};
-  pictures.left = left.view();
+  const PicturesOfDamage frame(in_frame);
   FlightReportInput input;
   input.inspected = 9;
   input.metric = true;
@@ -310,7 +306,7 @@ TEST(FlightReport, CutDamageHasSizeOfAllFrames) {
   known.best.metrics->volume_m3 = {0.081, 0.015};
   known.best.metrics->length_m = 11.3;
   known.best.metrics->quantity = 8.5;
-  input.damages[0].section = road_damage_section(pictures, in_frame, 7);
+  input.damages[0].section = road_damage_section(frame.pictures, in_frame, 7);
   const std::string html = flight_report(input);
   const auto property = [](const std::string& name, const std::string& value) {
     return "<dt>" + name + "</dt><dd>≥\u00a0" + value + "</dd>";
@@ -325,7 +321,7 @@ TEST(FlightReport, CutDamageHasSizeOfAllFrames) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   }
   known.best.cut_by_border = in_frame.cut_by_border = false;
-  input.damages[0].section = road_damage_section(pictures, in_frame, 7);
+  input.damages[0].section = road_damage_section(frame.pictures, in_frame, 7);
   const std::string whole = flight_report(input);
   EXPECT_NE(whole.find("<dt>area</dt><dd>2.1\u00a0±\u00a00.4"), std::string::npos);
   EXPECT_EQ(whole.find("over all frames"), std::string::npos);
