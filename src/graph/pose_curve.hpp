@@ -70,7 +70,7 @@ class PoseCurve {
   Eigen::Quaternion<T> rotation_at(std::size_t a, std::size_t b, const T& time_s) const {
     using std::cos;
     using std::sin;
-    const Eigen::Quaternion<T> from = nodes_[a].pose.rotation.cast<T>();
+    Eigen::Quaternion<T> from = nodes_[a].pose.rotation.cast<T>();
     if (a == b) return from;
     const Eigen::AngleAxisd turn(nodes_[a].pose.rotation.conjugate() * nodes_[b].pose.rotation);
     const double half_rate = 0.5 * turn.angle() / (nodes_[b].time_s - nodes_[a].time_s);

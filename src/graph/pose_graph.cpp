@@ -160,6 +160,7 @@ class Optimiser {
       pieces[input_.trajectory.frames[i].piece].push_back({input_.times_s[i], i, poses_[i]});
     }
     std::vector<PoseCurve> curves;
+    curves.reserve(pieces.size());
     for (const auto& [piece, poses] : pieces) curves.emplace_back(poses);
     return curves;
   }

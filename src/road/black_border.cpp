@@ -12,7 +12,7 @@ namespace {
 /// What is black at most: compression leaves a little. In a dark picture a tenth of its mean is less.
 std::int16_t black_level(ImageView<const std::int16_t> grey) {
   constexpr int step = 8, share = 10;
-  constexpr std::int64_t most = 3 * grey_scale;  // of 255 levels
+  constexpr std::int64_t most = std::int64_t{3} * grey_scale;  // of 255 levels
   std::int64_t sum = 0, count = 0;
   for (int v = 0; v < grey.height(); v += step) {
     for (int u = 0; u < grey.width(); u += step) sum += grey(u, v);

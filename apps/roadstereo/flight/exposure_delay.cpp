@@ -100,6 +100,7 @@ std::optional<HealthFinding> exposure_delay(const std::vector<FrameLink>& links,
   if (!(spread > 0) || scores.size() < min_references) return std::nullopt;
   if (share_of_largest_turn(samples) > most_of_one_turn) return std::nullopt;
   std::vector<double> in_order;
+  in_order.reserve(scores.size());
   for (const auto& [reference, score] : scores) in_order.push_back(score);
   const double unit = (timed ? 1000 : 1) / focal_px;
   const double delay = unit * slope, error = unit * blocked_error(std::move(in_order)) / spread;
