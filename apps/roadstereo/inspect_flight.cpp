@@ -60,7 +60,8 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
     text += fmt::format("  health    {}: {}\n", finding.id, finding.text);
   }
   if (summary.located)
-    text += fmt::format("  track     {} of {} frames have a position\n", *summary.located, summary.frames);
+    text += fmt::format("  track     {} of {} frames have a position{}\n", *summary.located, summary.frames,
+                        summary.located_by_trajectory > 0 ? ", by the trajectory" : "");
   if (!summary.track_outliers.empty()) text += fmt::format("            {}\n", summary.track_outliers);
   if (!summary.no_position_reason.empty()) text += fmt::format("            {}\n", summary.no_position_reason);
   if (summary.rig_bias.order > 0) {
@@ -187,7 +188,10 @@ void inspect_flight(FlightSettings settings) {
     map_text = add_map(settings, plan, folder, results.summary().static_mask, trajectory->crs(), *stop, run);
   stop.reset();  // the next Ctrl-C ends the program
   if (journal.last() && journal.last()->white_level > 0) run.options.white_level = journal.last()->white_level;
-  if (trajectory) run.crs = trajectory->crs();
+  if (trajectory) {
+    run.crs = trajectory->crs();
+    run.places = trajectory->places();
+  }
   run.source = source.source().description();
   run.calibration_format = source.calibration_format();
   run.calibration = source.calibration();

@@ -203,9 +203,20 @@ class Optimiser {
     if (!time_offset_found_) problem.hold_time_offset();
   }
 
-  /// Whether the track tells the time offset at least twice as well as it was known before.
+  /// Whether the track tells the time offset: at least twice as well as it was known before, and, where the expected
+  /// one fits, closer than clocks agree that run together, or as one that such clocks are less likely to have (of two
+  /// normal distributions, with their standard deviation and with that of clocks that do not).
   bool finds_time_offset(PoseGraphProblem& problem) const {
-    return 2 * problem.track_deviations()[3] < std::min(options_.time_offset_sd_s, options_.max_time_offset_s);
+    constexpr double together_sd_s = 0.05;
+    const double apart_sd_s = std::min(options_.time_offset_sd_s, options_.max_time_offset_s);
+    const double sd_s = problem.track_deviations()[3];
+    if (2 * sd_s >= apart_sd_s) return false;
+    if (aligned_offset_s_ != 0 || 2 * sd_s < together_sd_s) return true;
+    const auto deviance = [&](double clocks_sd_s) {
+      const double variance = clocks_sd_s * clocks_sd_s + sd_s * sd_s;
+      return track_.time_offset_s * track_.time_offset_s / variance + std::log(variance);
+    };
+    return deviance(apart_sd_s) < deviance(together_sd_s);
   }
 
   /// What is left of a link when the graph's motion is undone.

@@ -7,7 +7,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <vector>
 
+#include "core/degrees.hpp"
 #include "flight/flight_positions.hpp"
 
 namespace roadstereo::cli {
@@ -36,6 +38,7 @@ TEST(FlightPositions, StationStandsStillWithCamera) {
     frame.time_s = 0.1 * i;
     positions.add(frame, {});
   }
+  positions.place({});
   std::filesystem::remove(file);
   const auto station_m = [&](int i) { return positions.frames()[static_cast<std::size_t>(i)].station_m; };
   EXPECT_EQ(station_m(0), 0);
@@ -72,6 +75,7 @@ TEST(FlightPositions, StationIsNotThatOfWanderingFixes) {
       if (has_poses) frame.pose = {0, {1, 0, 0, 0, 0, 0, -1, 1.5, 0, 1, 0, moved_m(i)}};
       positions.add(frame, {});
     }
+    positions.place({});
     return positions.frames().back().station_m;
   };
   EXPECT_NEAR(last_station_m(true), 19, 0.1);
@@ -96,6 +100,7 @@ TEST(FlightPositions, DamageHasItsOwnStation) {
       frame.time_s = i;
       positions.add(frame, {});
     }
+    positions.place({});
     io::RoadDamage damage;
     damage.frame = 2;
     damage.best.metrics.emplace().road_centroid_m = {right_m, forward_m};
@@ -127,6 +132,7 @@ TEST(FlightPositions, StationIsThatOfFirstPass) {
     frame.time_s = i;
     positions.add(frame, {});
   }
+  positions.place({});
   std::filesystem::remove(file);
   io::RoadDamage damage;
   damage.first_frame = 3;
@@ -141,6 +147,55 @@ TEST(FlightPositions, StationIsThatOfFirstPass) {
   damage.first_frame = 25;
   positions.locate(damage);
   EXPECT_NEAR(damage.station_m, 32, 0.02) << "not seen before";
+}
+
+// A drone that flies north at 1 m/s and looks 30° to the right of that, over a road that rises to the north by 10 %.
+// Its receiver is 3 m off and has no course. Frame 7 has no pose.
+TEST(FlightPositions, TrajectoryPlacesFrames) {
+  constexpr double north_m = 111132.0, east_m = 78847.0;  // metres of a degree at 45°
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "trajectory_track.csv";
+  std::ofstream text(file);
+  text << "time,lat,lon,alt\n";
+  for (int i = 0; i <= 20; ++i) {
+    char line[80];
+    std::snprintf(line, sizeof line, "%d,%.10f,%.10f,100\n", i, 45 + i / north_m, 9 + (i % 2 == 0 ? 3 : -3) / east_m);
+    text << line;
+  }
+  text.close();
+  TrackSettings settings;
+  settings.file = file.string();
+  FlightPositions positions(settings);
+  constexpr double yaw_deg = 30, height_m = 8, foot_north_m = 0.8;  // a perpendicular onto the road leans by 10 %
+  std::vector<CameraPlace> places;
+  for (int i = 0; i <= 20; ++i) {
+    io::FlightFrame frame;
+    frame.index = i;
+    frame.time_s = i;
+    frame.height_m = height_m;
+    if (i == 10) frame.damages.emplace_back().metrics.emplace().road_centroid_m = {0, 2};
+    positions.add(frame, std::vector<std::int64_t>(frame.damages.size(), 1));
+    if (i == 7) continue;
+    places.push_back({i,
+                      {45 + i / north_m, 9, 100, yaw_deg},
+                      io::GeoPosition{45 + (i + foot_north_m) / north_m, 9, 100 - height_m, yaw_deg}});
+  }
+  positions.place(places);
+  std::filesystem::remove(file);
+  EXPECT_EQ(positions.located(), 21U);
+  EXPECT_NEAR(positions.frames()[10].position->lon_deg, 9, 1e-9);
+  EXPECT_NEAR(std::abs(positions.frames()[7].position->lon_deg - 9), 3 / east_m, 1e-9) << "by the track";
+  EXPECT_NEAR(positions.frames()[20].station_m, 20, 0.01);
+  io::RoadDamage damage;
+  damage.frame = damage.first_frame = 10;
+  damage.best.metrics.emplace().road_centroid_m = {0, 2};
+  positions.locate(damage);
+  ASSERT_TRUE(damage.position);
+  const double ahead_m = 2 * std::cos(to_radians(yaw_deg)), beside_m = 2 * std::sin(to_radians(yaw_deg));
+  EXPECT_NEAR((damage.position->lat_deg - 45) * north_m, 10 + foot_north_m + ahead_m, 1e-3);
+  EXPECT_NEAR((damage.position->lon_deg - 9) * east_m, beside_m, 1e-3);
+  EXPECT_NEAR(damage.position->alt_m, 100 - height_m, 1e-6);
+  EXPECT_NEAR(damage.ahead_m, ahead_m, 1e-3);
+  EXPECT_NEAR(damage.station_m, 10 + foot_north_m + ahead_m, 0.01);
 }
 
 }  // namespace

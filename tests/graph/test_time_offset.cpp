@@ -93,6 +93,23 @@ TEST(TimeOffset, InformationIsThatOfChangesOfSpeed) {
   EXPECT_NEAR(result.track->time_offset_s.std_error, expected, 0.02 * expected);
 }
 
+/// 4 m/s, changing by 0.3 m/s: with fixes of 0.3 m, of which 10 s count as one, that tells the offset to
+/// 0.3 · √10 / (0.3 / √2 · √20) = 1 s.
+double at_nearly_constant_speed(double time_s) {
+  return 4 * time_s + 0.3 / turns_per_s * std::sin(turns_per_s * time_s);
+}
+
+TEST(TimeOffset, IsThatOfClocksThatRunTogetherWhereLittleIsTold) {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const PoseGraphResult result = optimise_poses(Drive{at_nearly_constant_speed, 0.3, 0, seed}.input());
+    ASSERT_TRUE(result.track) << result.track_unused;
+    EXPECT_FALSE(result.track->time_offset_found) << seed;
+    EXPECT_EQ(result.track->time_offset_s.value, 0) << seed;
+    EXPECT_NEAR(result.track->time_offset_s.std_error, 1, 0.7) << seed;
+    EXPECT_NEAR(result.trajectory.frames[100].camera_to_world[3], at_nearly_constant_speed(10), 4 * 0.067) << seed;
+  }
+}
+
 /// Changes that do not repeat: else several offsets fit.
 double at_random_speed(double time_s) {
   return 4 * time_s + 2 * std::sin(0.5 * time_s) + 1.5 * std::sin(0.83 * time_s);

@@ -38,6 +38,7 @@ Json frames_json(const FlightSummary& summary) {
           {"road_unknown", summary.road_unknown},
           {"inspected", summary.inspected},
           {"located", summary.located ? Json(*summary.located) : Json(nullptr)},
+          {"located_by_trajectory", summary.located ? Json(summary.located_by_trajectory) : Json(nullptr)},
           {"reasons", summary.reasons}};
 }
 

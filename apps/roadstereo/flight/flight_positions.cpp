@@ -8,6 +8,7 @@
 
 #include "core/degrees.hpp"
 #include "io/flight/standing.hpp"
+#include "io/geo/travel_heading.hpp"
 
 namespace roadstereo::cli {
 
@@ -19,21 +20,21 @@ io::TrackOptions options_of(const TrackSettings& settings) {
   return options;
 }
 
-/// Returns the position of a damage, or nullopt if the camera position or the metric values are unknown.
-std::optional<io::GeoPosition> position_of(const Damage& damage, const std::optional<io::GeoPosition>& camera,
-                                           double height_m) {
-  if (!camera || !damage.metrics) return std::nullopt;
+/// Returns the position of a damage, or nullopt if the foot of the camera or the metric values are unknown.
+std::optional<io::GeoPosition> position_of(const Damage& damage, const std::optional<io::GeoPosition>& foot) {
+  if (!foot || !damage.metrics) return std::nullopt;
   const auto& [right_m, forward_m] = damage.metrics->road_centroid_m;
-  return io::offset_position(*camera, right_m, forward_m, -height_m);
+  constexpr double on_road_m = 0;
+  return io::offset_position(*foot, right_m, forward_m, on_road_m);
 }
 
 /// Returns longitudes and latitudes of a polygon on the road; empty if the heading is unknown.
 std::vector<std::array<double, 2>> on_earth(const std::vector<std::array<double, 2>>& corners_m,
-                                            const std::optional<io::GeoPosition>& camera) {
+                                            const std::optional<io::GeoPosition>& foot) {
   std::vector<std::array<double, 2>> corners_deg;
-  if (!camera) return corners_deg;
+  if (!foot) return corners_deg;
   for (const auto& [right_m, forward_m] : corners_m) {
-    const std::optional<io::GeoPosition> corner = io::offset_position(*camera, right_m, forward_m);
+    const std::optional<io::GeoPosition> corner = io::offset_position(*foot, right_m, forward_m);
     if (!corner) return {};
     corners_deg.push_back({corner->lon_deg, corner->lat_deg});
   }
@@ -44,7 +45,7 @@ std::vector<std::array<double, 2>> on_earth(const std::vector<std::array<double,
 
 FlightPositions::FlightPositions(const TrackSettings& settings)
     : offset_s_(settings.offset_s),
-      mount_yaw_rad_(to_radians(settings.mount_yaw_deg)),
+      mount_yaw_deg_(settings.mount_yaw_deg),
       track_(io::read_track(settings.file, options_of(settings))) {}
 
 void FlightPositions::add(const io::FlightFrame& frame, const std::vector<std::int64_t>& road_damages) {
@@ -52,13 +53,6 @@ void FlightPositions::add(const io::FlightFrame& frame, const std::vector<std::i
   geo.index = frame.index;
   geo.name = frame.name;
   geo.time_s = frame.time_s + offset_s_;
-  if (std::isfinite(geo.time_s)) geo.position = io::position_at(track_, geo.time_s);
-  if (geo.position) {
-    if (has_moved(frame)) update_station(*geo.position);
-    geo.station_m = station_m_;
-    ++located_;
-  }
-  geo.footprint_deg = on_earth(frame.footprint_m, geo.position);
   geo.roll_rad = frame.roll_rad;
   geo.height_m = frame.height_m;
   geo.sigma_d_px = frame.sigma_d_px;
@@ -66,90 +60,140 @@ void FlightPositions::add(const io::FlightFrame& frame, const std::vector<std::i
   if (std::isfinite(frame.noise_px)) geo.damages = static_cast<std::int64_t>(frame.damages.size());
   geo.status = name_of(frame.status);
   for (std::size_t i = 0; i < frame.damages.size(); ++i) {
-    sightings_.push_back({road_damages[i], geo.index, geo.name, geo.time_s, frame.damages[i],
-                          position_of(frame.damages[i], geo.position, frame.height_m)});
+    sightings_.push_back({road_damages[i], geo.index, geo.name, geo.time_s, frame.damages[i], {}});
   }
   frames_.push_back(std::move(geo));
+  Ground ground;
+  ground.footprint_m = frame.footprint_m;
+  ground.has_moved = has_moved(frame);
+  grounds_.push_back(std::move(ground));
+}
+
+void FlightPositions::place(std::span<const CameraPlace> places) {
+  for (std::size_t i = 0; i < frames_.size(); ++i) place_by_track(i);
+  place_by_trajectory(places);
+  set_stations(!places.empty());
+  for (std::size_t i = 0; i < frames_.size(); ++i)
+    frames_[i].footprint_deg = on_earth(grounds_[i].footprint_m, grounds_[i].foot);
+  for (io::GeoSighting& sighting : sightings_) {
+    sighting.position = position_of(sighting.damage, grounds_[at_or_after(sighting.frame)].foot);
+  }
+}
+
+void FlightPositions::place_by_track(std::size_t i) {
+  io::GeoFrame& frame = frames_[i];
+  if (!std::isfinite(frame.time_s)) return;
+  frame.position = io::position_at(track_, frame.time_s);
+  if (!frame.position) return;
+  grounds_[i].foot = frame.position;
+  grounds_[i].foot->alt_m -= frame.height_m;
+  grounds_[i].view_yaw_deg = mount_yaw_deg_;
+}
+
+/// The travel is along the path, wherever the camera looks; a camera that has not moved looks as the track says.
+void FlightPositions::place_by_trajectory(std::span<const CameraPlace> places) {
+  std::vector<io::TrackPoint> path;
+  for (const CameraPlace& place : places) {
+    const std::size_t i = at_or_after(place.frame);
+    frames_[i].position = place.camera;
+    grounds_[i].foot = place.foot;
+    grounds_[i].by_trajectory = true;
+    path.push_back({frames_[i].time_s, place.camera.lat_deg, place.camera.lon_deg});
+  }
+  io::fill_headings(path, track_.options());
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const double yaw_deg = places[k].camera.heading_deg - path[k].heading_deg;
+    grounds_[at_or_after(places[k].frame)].view_yaw_deg = std::isfinite(yaw_deg) ? yaw_deg : mount_yaw_deg_;
+  }
+}
+
+/// Distances along the path. Steps are taken from the last position that is well away, so that the noise of the
+/// positions does not add up while the camera stands and nobody knows it, and not between trajectory and track.
+void FlightPositions::set_stations(bool by_trajectory) {
+  constexpr double min_step_m = 0.5;
+  std::optional<io::GeoPosition> last;
+  double last_station_m = 0, station_m = 0;
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    io::GeoFrame& frame = frames_[i];
+    if (!frame.position) continue;
+    ++located_;
+    if (grounds_[i].has_moved && grounds_[i].by_trajectory == by_trajectory) {
+      const double step_m = last ? io::distance_m(*last, *frame.position) : 0;
+      station_m = std::max(station_m, last_station_m + step_m);
+      if (!last || step_m >= min_step_m) {
+        last = frame.position;
+        last_station_m += step_m;
+      }
+    }
+    frame.station_m = station_m;
+  }
 }
 
 /// Distance of a damage from the camera along the travel, which the camera need not look along; 0 if unknown.
-double FlightPositions::distance_ahead_m(const Damage& damage) const {
+double FlightPositions::distance_ahead_m(std::size_t i, const Damage& damage) const {
   if (!damage.metrics) return 0;
   const auto& [right_m, forward_m] = damage.metrics->road_centroid_m;
-  return forward_m * std::cos(mount_yaw_rad_) - right_m * std::sin(mount_yaw_rad_);
+  const double yaw_rad = to_radians(grounds_[i].view_yaw_deg);
+  return forward_m * std::cos(yaw_rad) - right_m * std::sin(yaw_rad);
 }
 
 /// The same of a place on the Earth, from a frame with a position.
-double FlightPositions::distance_ahead_m(const io::GeoFrame& frame, const io::GeoPosition& place) const {
-  const io::GeoPosition& camera = *frame.position;
+double FlightPositions::distance_ahead_m(std::size_t i, const io::GeoPosition& place) const {
+  const io::GeoPosition& camera = *frames_[i].position;
   if (!std::isfinite(camera.heading_deg)) return 0;
   const double east_deg = std::remainder(place.lon_deg - camera.lon_deg, 360.0);
   const double north_m =
       std::copysign(io::distance_m(camera, {place.lat_deg, camera.lon_deg}), place.lat_deg - camera.lat_deg);
   const double east_m = std::copysign(io::distance_m(camera, {camera.lat_deg, place.lon_deg}), east_deg);
-  const double travel_rad = to_radians(camera.heading_deg) - mount_yaw_rad_;
+  const double travel_rad = to_radians(camera.heading_deg - grounds_[i].view_yaw_deg);
   return north_m * std::cos(travel_rad) + east_m * std::sin(travel_rad);
 }
 
 /// Frame with a position that is nearest to a place when the camera first passes it: from a frame that shows it until
 /// the camera goes away, since it may come back.
-const io::GeoFrame* FlightPositions::first_pass(std::int64_t first_frame, const io::GeoPosition& place) const {
+std::optional<std::size_t> FlightPositions::first_pass(std::int64_t first_frame, const io::GeoPosition& place) const {
   constexpr double min_step_m = 0.5;
-  const io::GeoFrame* nearest = nullptr;
+  std::optional<std::size_t> nearest;
   double min_distance_m = std::numeric_limits<double>::infinity();
-  for (auto frame = at_or_after(first_frame); frame != frames_.end(); ++frame) {
-    if (!frame->position) continue;
-    const double away_m = io::distance_m(*frame->position, place);
+  for (std::size_t i = at_or_after(first_frame); i < frames_.size(); ++i) {
+    if (!frames_[i].position) continue;
+    const double away_m = io::distance_m(*frames_[i].position, place);
     if (away_m > min_distance_m + min_step_m) break;
     if (away_m >= min_distance_m) continue;
     min_distance_m = away_m;
-    nearest = &*frame;
+    nearest = i;
   }
   return nearest;
 }
 
 /// First frame of at least that index.
-std::vector<io::GeoFrame>::const_iterator FlightPositions::at_or_after(std::int64_t index) const {
-  return std::lower_bound(frames_.begin(), frames_.end(), index,
-                          [](const io::GeoFrame& one, std::int64_t of) { return one.index < of; });
+std::size_t FlightPositions::at_or_after(std::int64_t index) const {
+  const auto frame = std::lower_bound(frames_.begin(), frames_.end(), index,
+                                      [](const io::GeoFrame& one, std::int64_t of) { return one.index < of; });
+  return static_cast<std::size_t>(frame - frames_.begin());
 }
 
-/// Whether the camera has left the place of an earlier frame, by the poses; true without them.
 bool FlightPositions::has_moved(const io::FlightFrame& frame) {
   const bool stands = io::stands_at(view_from_, frame);
   if (!stands && frame.pose) view_from_ = frame.pose;
   return !stands;
 }
 
-/// Distance along the track. Steps are taken from the last position that is well away, so that the noise of the
-/// positions does not add up while the camera stands and nobody knows it.
-void FlightPositions::update_station(const io::GeoPosition& position) {
-  constexpr double min_step_m = 0.5;
-  const double step_m = last_ ? io::distance_m(*last_, position) : min_step_m;
-  const double station_m = last_ ? last_station_m_ + step_m : 0;
-  if (step_m >= min_step_m) {
-    last_ = position;
-    last_station_m_ = station_m;
-  }
-  station_m_ = std::max(station_m_, station_m);
-}
-
 void FlightPositions::locate(io::RoadDamage& damage) const {
-  const auto frame = at_or_after(damage.frame);
-  if (frame == frames_.end() || frame->index != damage.frame) return;
-  damage.time_s = frame->time_s;
-  if (!frame->position) return;
-  damage.ahead_m = distance_ahead_m(damage.best);
-  damage.station_m = frame->station_m + damage.ahead_m;
-  damage.position = position_of(damage.best, frame->position, frame->height_m);
+  const std::size_t i = at_or_after(damage.frame);
+  if (i == frames_.size() || frames_[i].index != damage.frame) return;
+  damage.time_s = frames_[i].time_s;
+  if (!frames_[i].position) return;
+  damage.ahead_m = distance_ahead_m(i, damage.best);
+  damage.station_m = frames_[i].station_m + damage.ahead_m;
+  damage.position = position_of(damage.best, grounds_[i].foot);
   if (damage.position) {
-    const io::GeoFrame* const passing = first_pass(damage.first_frame, *damage.position);
-    if (passing != nullptr && passing->index != damage.frame) {
-      damage.station_m = passing->station_m + distance_ahead_m(*passing, *damage.position);
+    const std::optional<std::size_t> passing = first_pass(damage.first_frame, *damage.position);
+    if (passing && *passing != i) {
+      damage.station_m = frames_[*passing].station_m + distance_ahead_m(*passing, *damage.position);
     }
   }
-  if (!damage.best.metrics) return;
-  damage.outline_deg = on_earth(damage.best.metrics->outline_m, frame->position);
+  if (damage.best.metrics) damage.outline_deg = on_earth(damage.best.metrics->outline_m, grounds_[i].foot);
 }
 
 std::string FlightPositions::no_position_reason() const {

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "flight/camera_place.hpp"
 #include "flight/flight_job.hpp"
 #include "flight/flight_settings.hpp"
 #include "roadstereo/io/geo_files.hpp"
@@ -13,15 +16,19 @@
 
 namespace roadstereo::cli {
 
-/// Positions of the frames and damages of a flight from a GNSS track.
+/// Positions of the frames and damages of a flight: from its trajectory on the Earth, or from a GNSS track alone.
 class FlightPositions {
  public:
   /// Reads the track. Throws Error naming its file and line.
   explicit FlightPositions(const TrackSettings& settings);
 
-  /// Adds the next frame, whose damages are those of the road with these ids. It has no position if its time is outside
-  /// the track.
+  /// Adds the next frame, whose damages are those of the road with these ids.
   void add(const io::FlightFrame& frame, const std::vector<std::int64_t>& road_damages);
+
+  /// Gives positions and stations to the frames that were added, and to their damages: by the trajectory (its places
+  /// in order), a frame that it does not place by the track, with the heading of the track. A frame that neither
+  /// places has no position.
+  void place(std::span<const CameraPlace> places);
 
   std::size_t located() const { return located_; }  ///< number of frames with a position
 
@@ -41,22 +48,31 @@ class FlightPositions {
   std::vector<StagedFile> files(std::span<const io::RoadDamage> damages, bool with_candidates) const;
 
  private:
+  /// What else is known of a frame.
+  struct Ground {
+    std::vector<std::array<double, 2>> footprint_m;
+    bool has_moved = true;                ///< since the frame before, by the poses; true without them
+    std::optional<io::GeoPosition> foot;  ///< of the camera on the road
+    double view_yaw_deg = 0;              ///< of the camera relative to the travel, clockwise
+    bool by_trajectory = false;           ///< placed by it
+  };
+
   bool has_moved(const io::FlightFrame& frame);
-  void update_station(const io::GeoPosition& position);
-  double distance_ahead_m(const Damage& damage) const;
-  double distance_ahead_m(const io::GeoFrame& frame, const io::GeoPosition& place) const;
-  std::vector<io::GeoFrame>::const_iterator at_or_after(std::int64_t index) const;
-  const io::GeoFrame* first_pass(std::int64_t first_frame, const io::GeoPosition& place) const;
+  void place_by_track(std::size_t i);
+  void place_by_trajectory(std::span<const CameraPlace> places);
+  void set_stations(bool by_trajectory);
+  double distance_ahead_m(std::size_t i, const Damage& damage) const;
+  double distance_ahead_m(std::size_t i, const io::GeoPosition& place) const;
+  std::size_t at_or_after(std::int64_t index) const;
+  std::optional<std::size_t> first_pass(std::int64_t first_frame, const io::GeoPosition& place) const;
 
   double offset_s_;
-  double mount_yaw_rad_;
+  double mount_yaw_deg_;
   io::Track track_;
   std::vector<io::GeoFrame> frames_;
+  std::vector<Ground> grounds_;  ///< of each frame
   std::vector<io::GeoSighting> sightings_;
   std::size_t located_ = 0;
-  double station_m_ = 0;                     ///< of the last frame with a position
-  std::optional<io::GeoPosition> last_;      ///< position that steps are taken from
-  double last_station_m_ = 0;                ///< its station
   std::optional<io::FlightPose> view_from_;  ///< first pose at the place where the camera is
 };
 

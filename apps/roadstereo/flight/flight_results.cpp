@@ -59,7 +59,9 @@ std::vector<std::pair<std::string, std::string>> properties_of(const FlightRun& 
                           fmt::format("{} matching, {} damage", range_text(summary.matching_ms, "ms", 1),
                                       range_text(summary.damage_ms, "ms", 1)));
   if (summary.located)
-    properties.emplace_back("Frames with position", fmt::format("{} of {} frames", *summary.located, summary.frames));
+    properties.emplace_back("Frames with position",
+                            fmt::format("{} of {} frames{}", *summary.located, summary.frames,
+                                        summary.located_by_trajectory > 0 ? ", by the trajectory" : ""));
   properties.emplace_back("Engine", fmt::format("{}, {} threads", run.engine, run.threads));
   return properties;
 }
@@ -199,6 +201,7 @@ std::string FlightResults::report(const FlightSettings& settings, const FlightRu
 }
 
 std::string FlightResults::write(const FlightSettings& settings, const FlightRun& run, FlightFolder& folder) {
+  if (positions_) positions_->place(run.places);
   const std::vector<io::RoadDamage> damages = located_damages();
   const std::vector<io::RoadDamage> worst = io::worst_first(damages, false);
   const std::vector<io::RoadDamage> candidates = io::worst_first(damages, true);
@@ -208,6 +211,7 @@ std::string FlightResults::write(const FlightSettings& settings, const FlightRun
   for (const io::RoadDamage& damage : worst) summary_.sightings += damage.sightings;
   if (positions_) {
     summary_.located = static_cast<std::int64_t>(positions_->located());
+    summary_.located_by_trajectory = static_cast<std::int64_t>(run.places.size());
     summary_.no_position_reason = positions_->no_position_reason();
     summary_.track_outliers = positions_->outliers_text();
   }

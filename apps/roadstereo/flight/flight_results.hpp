@@ -26,10 +26,11 @@ struct FlightRun {
   std::string engine;  ///< name of the engine used
   int threads = 0;     ///< of matching
   PipelineOptions options;
-  double seconds = 0;            ///< of this run
-  double frames_per_second = 0;  ///< of this run, from the first frame to the last
-  std::int64_t resumed_at = 0;   ///< number of frames done by earlier runs
-  std::string crs;               ///< of the poses of the trajectory; empty: those of cameras
+  double seconds = 0;               ///< of this run
+  double frames_per_second = 0;     ///< of this run, from the first frame to the last
+  std::int64_t resumed_at = 0;      ///< number of frames done by earlier runs
+  std::string crs;                  ///< of the poses of the trajectory; empty: those of cameras
+  std::vector<CameraPlace> places;  ///< FlightTrajectory::places
   std::optional<io::ReportedMap> map;
   std::string no_map_reason;  ///< why --map made none
 };

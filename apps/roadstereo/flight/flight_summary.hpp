@@ -18,16 +18,17 @@ struct FlightSummary {
   std::int64_t good = 0;
   std::int64_t rejected = 0;
   std::int64_t failed = 0;
-  std::int64_t road_estimated = 0;      ///< frames whose road model was estimated, not tracked
-  std::int64_t road_unknown = 0;        ///< good frames without a road model before matching
-  std::int64_t inspected = 0;           ///< frames in which damage was searched for
-  std::optional<std::int64_t> located;  ///< frames with a position; absent without a track
-  std::string no_position_reason;       ///< reason if no frame has a position
-  std::string track_outliers;           ///< which fixes of the track were left out
-  std::int64_t damages = 0;             ///< road damages (FlightInventory)
-  std::int64_t candidates = 0;          ///< of the road
-  std::int64_t sightings = 0;           ///< damages of all frames
-  std::vector<std::string> reasons;     ///< why frames are not good; of the first few
+  std::int64_t road_estimated = 0;         ///< frames whose road model was estimated, not tracked
+  std::int64_t road_unknown = 0;           ///< good frames without a road model before matching
+  std::int64_t inspected = 0;              ///< frames in which damage was searched for
+  std::optional<std::int64_t> located;     ///< frames with a position; absent without a track
+  std::int64_t located_by_trajectory = 0;  ///< of these, those placed by the trajectory instead of the track
+  std::string no_position_reason;          ///< reason if no frame has a position
+  std::string track_outliers;              ///< which fixes of the track were left out
+  std::int64_t damages = 0;                ///< road damages (FlightInventory)
+  std::int64_t candidates = 0;             ///< of the road
+  std::int64_t sightings = 0;              ///< damages of all frames
+  std::vector<std::string> reasons;        ///< why frames are not good; of the first few
   double first_time_s = io::FlightFrame::unknown;
   double last_time_s = io::FlightFrame::unknown;
   io::StaticMaskRecord static_mask;  ///< of the last frame

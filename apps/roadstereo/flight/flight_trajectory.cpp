@@ -13,9 +13,9 @@
 #include "flight/exposure_delay.hpp"
 #include "flight/rolling_shutter.hpp"
 #include "io/csv.hpp"
-#include "roadstereo/ground_plane.hpp"
 #include "roadstereo/io/local_axes.hpp"
 #include "roadstereo/io/trajectory_file.hpp"
+#include "roadstereo/rigid_transform.hpp"
 
 namespace roadstereo::cli {
 
@@ -116,6 +116,17 @@ std::string track_text(const PoseGraphResult& graph) {
   return text + " m";
 }
 
+CameraPlace place_of(const FramePose& pose, const std::optional<RoadAxes>& road, const io::LocalAxes& axes) {
+  CameraPlace place{pose.frame, axes.position(pose.camera_to_world), {}};
+  if (road) {
+    RigidTransform at_foot = pose.camera_to_world;
+    const std::array<double, 3> foot = transform_point(pose.camera_to_world, road->origin_m);
+    for (std::size_t i = 0; i < foot.size(); ++i) at_foot[4 * i + 3] = foot[i];
+    place.foot = axes.position(at_foot);
+  }
+  return place;
+}
+
 }  // namespace
 
 const std::vector<std::string>& trajectory_file_names() {
@@ -136,8 +147,8 @@ std::optional<io::RosPose> FlightTrajectory::add(const io::FlightFrame& frame, c
   times_s_.push_back(frame.time_s);
   std::optional<DisparityPlane> road;
   if (result.roll_found) road = result.geometry.plane;
-  road_up_.emplace_back();
-  if (road) road_up_.back() = road_axes(ground_plane(*road, calibration_)).z;
+  road_axes_.emplace_back();
+  if (road) road_axes_.back() = road_axes(ground_plane(*road, calibration_));
   if (loops_ && odometry_.reference() == index) {
     loops_->add(index, result, odometry_.links().empty() ? 0 : odometry_.links().back().offset_px);
   }
@@ -150,7 +161,9 @@ void FlightTrajectory::optimise(const TrackSettings& track) {
   input.trajectory = odometry_.trajectory();
   input.links = odometry_.links();
   input.times_s = times_s_;
-  input.road_up = road_up_;
+  for (const std::optional<RoadAxes>& axes : road_axes_) {
+    input.road_up.push_back(axes ? std::optional(axes->z) : std::nullopt);
+  }
   std::optional<io::LocalAxes> axes;
   if (!track.file.empty()) {
     axes.emplace(io::read_track(track.file));
@@ -163,8 +176,11 @@ void FlightTrajectory::optimise(const TrackSettings& track) {
   loops_.reset();
   if (!graph_.track) return;
   crs_ = axes->crs();
-  for (FramePose& pose : graph_.trajectory.frames) {
-    if (pose.piece == 0) pose.camera_to_world = axes->to_utm(pose.camera_to_world);
+  for (std::size_t i = 0; i < graph_.trajectory.frames.size(); ++i) {
+    FramePose& pose = graph_.trajectory.frames[i];
+    if (pose.piece != 0) continue;
+    places_.push_back(place_of(pose, road_axes_[i], *axes));
+    pose.camera_to_world = axes->to_utm(pose.camera_to_world);
   }
 }
 

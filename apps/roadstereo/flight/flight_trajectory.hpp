@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "flight/camera_place.hpp"
 #include "flight/flight_job.hpp"
 #include "flight/flight_settings.hpp"
 #include "io/ros/road_odometry.hpp"
+#include "roadstereo/ground_plane.hpp"
 #include "roadstereo/loop_search.hpp"
 #include "roadstereo/odometry.hpp"
 
@@ -38,6 +40,9 @@ class FlightTrajectory {
   /// The coordinate system of the poses, as GDAL reads it; empty: the axes of the first camera.
   const std::string& crs() const { return crs_; }
 
+  /// Where the cameras were on the Earth, in order; empty unless a track fits the trajectory.
+  const std::vector<CameraPlace>& places() const { return places_; }
+
   /// Why the track cannot be that of this flight, a sentence; empty without one, or if it can.
   std::string track_contradiction() const { return graph_.track_contradicts ? graph_.track_unused : std::string(); }
 
@@ -54,10 +59,11 @@ class FlightTrajectory {
   std::optional<LoopSearch> loops_;
   io::RoadOdometry road_odometry_;
   std::vector<double> times_s_;
-  std::vector<std::optional<std::array<double, 3>>> road_up_;
+  std::vector<std::optional<RoadAxes>> road_axes_;  ///< of each frame, in its camera's frame
   StereoCalibration calibration_;
   PoseGraphResult graph_;  ///< empty before `optimise`
   std::string crs_;
+  std::vector<CameraPlace> places_;
 };
 
 }  // namespace roadstereo::cli

@@ -26,6 +26,10 @@ class LocalAxes {
   /// Moves a pose (3×4, row-major, metres) from these axes to UTM: x east, y north of the grid, z altitude.
   std::array<double, 12> to_utm(const std::array<double, 12>& pose) const;
 
+  /// Position of a camera whose pose is given in these axes (3×4, row-major, metres), with the direction of its upper
+  /// image border over the ground as heading; NaN if its x axis is vertical.
+  GeoPosition position(const std::array<double, 12>& pose) const;
+
  private:
   double lat_deg_ = 0, lon_deg_ = 0, alt_m_ = 0;  ///< of the origin
   int zone_ = 0;

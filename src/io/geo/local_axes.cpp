@@ -8,6 +8,29 @@
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
+namespace {
+
+/// A pose on the ellipsoid: axes of the camera east, north and up at its own place.
+struct EarthPose {
+  double lat_deg = 0, lon_deg = 0, alt_m = 0;
+  std::array<std::array<double, 3>, 3> axes{};  ///< x, y and z of the camera
+};
+
+EarthPose on_earth(const GeographicLib::LocalCartesian& local, const std::array<double, 12>& pose) {
+  EarthPose result;
+  std::vector<double> here_to_local(9);
+  local.Reverse(pose[3], pose[7], pose[11], result.lat_deg, result.lon_deg, result.alt_m, here_to_local);
+  for (std::size_t column = 0; column < 3; ++column) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        result.axes[column][i] += here_to_local[3 * k + i] * pose[4 * k + column];
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace
 
 LocalAxes::LocalAxes(const Track& track) {
   const TrackPoint& origin = track.points().front();
@@ -32,33 +55,41 @@ LocalAxes::LocalAxes(const Track& track) {
 }
 
 std::array<double, 12> LocalAxes::to_utm(const std::array<double, 12>& pose) const {
-  const GeographicLib::LocalCartesian local(lat_deg_, lon_deg_, alt_m_);
-  double lat = 0, lon = 0, alt = 0, east = 0, north = 0, convergence_deg = 0, scale = 1;
-  std::vector<double> here_to_local(9);
-  local.Reverse(pose[3], pose[7], pose[11], lat, lon, alt, here_to_local);
+  const EarthPose here = on_earth({lat_deg_, lon_deg_, alt_m_}, pose);
+  double east = 0, north = 0, convergence_deg = 0, scale = 1;
   int zone = zone_;
   bool northern = north_;
   try {
-    GeographicLib::UTMUPS::Forward(lat, lon, zone, northern, east, north, convergence_deg, scale, zone_);
+    GeographicLib::UTMUPS::Forward(here.lat_deg, here.lon_deg, zone, northern, east, north, convergence_deg, scale,
+                                   zone_);
   } catch (const GeographicLib::GeographicErr&) {
-    fail("a pose lies at latitude ", lat, "°, longitude ", lon, "°, which is too far from UTM zone ", zone_);
+    fail("a pose lies at latitude ", here.lat_deg, "°, longitude ", here.lon_deg, "°, which is too far from UTM zone ",
+         zone_);
   }
   if (northern != north_) north += north_ ? -GeographicLib::UTMUPS::UTMShift() : GeographicLib::UTMUPS::UTMShift();
   const double angle = to_radians(convergence_deg), c = std::cos(angle), s = std::sin(angle);
   std::array<double, 12> result{};
   for (std::size_t column = 0; column < 3; ++column) {
-    std::array<double, 3> here{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) here[i] += here_to_local[3 * k + i] * pose[4 * k + column];
-    }
-    result[column] = c * here[0] - s * here[1];
-    result[4 + column] = s * here[0] + c * here[1];
-    result[8 + column] = here[2];
+    const auto& [to_east, to_north, up] = here.axes[column];
+    result[column] = c * to_east - s * to_north;
+    result[4 + column] = s * to_east + c * to_north;
+    result[8 + column] = up;
   }
   result[3] = east;
   result[7] = north;
-  result[11] = alt;
+  result[11] = here.alt_m;
   return result;
+}
+
+GeoPosition LocalAxes::position(const std::array<double, 12>& pose) const {
+  const EarthPose here = on_earth({lat_deg_, lon_deg_, alt_m_}, pose);
+  GeoPosition position{here.lat_deg, here.lon_deg, here.alt_m};
+  const auto& [right_east, right_north, right_up] = here.axes[0];
+  if (right_east != 0 || right_north != 0) {
+    constexpr double turn_deg = 360;
+    position.heading_deg = std::fmod(to_degrees(std::atan2(-right_north, right_east)) + turn_deg, turn_deg);
+  }
+  return position;
 }
 
 }  // namespace roadstereo::io

@@ -46,6 +46,10 @@ std::array<double, 12> LocalAxes::to_utm(const std::array<double, 12>& /*pose*/)
   fail_without_geo();
 }
 
+GeoPosition LocalAxes::position(const std::array<double, 12>& /*pose*/) const {
+  fail_without_geo();
+}
+
 std::vector<std::uint8_t> geopackage(const GeoLayers& /*layers*/, const Track& /*track*/) {
   fail_without_geo();
 }

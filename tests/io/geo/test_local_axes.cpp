@@ -1,9 +1,11 @@
 // Axes of the Earth at a track: UTM and its grid north against each other.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
+#include "core/degrees.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/local_axes.hpp"
 
@@ -47,6 +49,29 @@ TEST(LocalAxes, GridNorthIsThatOfPositions) {
       }
     }
   }
+}
+
+// Cameras that look down, their upper border to the north, east, south and west, at the second fix.
+TEST(LocalAxes, HeadingIsThatOfUpperImageBorder) {
+  const LocalAxes axes(track_at(48, 11.5));
+  const auto& [x, y, z] = axes.fixes()[1].position_m;
+  for (const auto& [right_east, right_north, heading_deg] :
+       {std::array{1.0, 0.0, 0.0}, {0.0, -1.0, 90.0}, {-1.0, 0.0, 180.0}, {0.0, 1.0, 270.0}}) {
+    const GeoPosition position =
+        axes.position({right_east, right_north, 0, x, right_north, -right_east, 0, y, 0, 0, -1, z});
+    EXPECT_NEAR(std::remainder(position.heading_deg - heading_deg, 360.0), 0, 1e-9);
+    EXPECT_NEAR(position.lat_deg, 48.001, 1e-9);
+    EXPECT_NEAR(position.lon_deg, 11.5, 1e-9);
+    EXPECT_NEAR(position.alt_m, 401, 1e-6);
+  }
+}
+
+// The meridians of two places 10 km apart along a parallel differ by 10 km · tan φ / (radius of the parallel's normal).
+TEST(LocalAxes, HeadingIsFromTrueNorthOfItsPlace) {
+  const LocalAxes axes(track_at(48, 11.5));
+  const GeoPosition position = axes.position({1, 0, 0, 1e4, 0, -1, 0, 0, 0, 0, -1, 0});
+  const double normal_m = 6378137 / std::sqrt(1 - 0.00669438 * std::pow(std::sin(to_radians(48)), 2));
+  EXPECT_NEAR(std::remainder(position.heading_deg, 360.0), to_degrees(1e4 * std::tan(to_radians(48)) / normal_m), 1e-4);
 }
 
 TEST(LocalAxes, PolesHaveNoUtm) {
