@@ -138,6 +138,19 @@ def robustness(result):
 
 
 @needs("robustness")
+def accuracy_sources(result):
+    table = []
+    for row in result["roads"]:
+        of_source = rows_where(result["disparities"], source=row["source"])
+        keys = [(f"e_p_or_missing_{limit}px_percent", 1) for limit in ("0.5", "1", "2")]
+        ours = row_where(of_source, method="default")
+        table.append([row["source"], number(row["frame_count"], 0), number(row["found_percent"], 0),
+                      *(f"{number(ours[key], decimals)} ({number(best(of_source, key), decimals)})"
+                        for key, decimals in keys)])
+    return markdown(["source", "frames", "roads found %", "e_p+(0.5) %", "e_p+(1) %", "e_p+(2) %"], table)
+
+
+@needs("robustness")
 def robustness_disparities(result):
     keys = [("density_percent", 1), ("e_r_px", 3), ("error_sd_px", 3), ("e_p_2px_percent", 2), ("e_p_3px_percent", 2),
             ("e_p_or_missing_0.5px_percent", 1), ("e_p_or_missing_1px_percent", 2),
@@ -263,6 +276,26 @@ def damage(maps, wider, pairs):
               number(row["false_positives"], 0)]
              for name, result in (("maps", maps), ("wider maps", wider), ("pairs", pairs)) for row in result["rows"]]
     return markdown(["transformed", "frame", "precision", "recall", "F", "false positives"], table)
+
+
+@needs("damage_maps", "damage_wider_maps", "damage_pairs", "damage_kitti", "damage_scenes", "damage_degraded", "damage_wide",
+       "damage_ruts", "damage_other")
+def damage_sources(maps, wider_maps, pairs, kitti, clean, degraded, wide, ruts, other):
+    def labelled(title, result):
+        row = row_where(result["rows"], frame="all pixels")
+        return [title, *(number(row[key], 0) for key in ("labels", "found", "false_positives"))]
+
+    def rendered(title, result):
+        row = row_where(result["detection"], kind="without cracks")
+        return [title, *(number(value, 0) for value in (row["deeper_than_3_std_errors"], row["found_of_those"],
+                                                        result["false_positives"]))]
+    intact = [row for row in kitti["rows"] if row["frame"] != "mean"]
+    false = sum(row["false_depressions"] + row["false_protrusions"] for row in intact)
+    return markdown(["source", "clear", "found", "false"], [
+        labelled("real potholes, stereo pairs", pairs), labelled("real potholes, transformed maps", maps),
+        labelled("the same, wider set", wider_maps), [f"intact KITTI streets, {len(intact)} frames", "", "", number(false, 0)],
+        rendered("own roads, clean", clean), rendered("own roads, degraded", degraded), rendered("own roads, wide", wide),
+        rendered("own roads with ruts", ruts), rendered("roads of another renderer", other)])
 
 
 @needs("damage_kitti")

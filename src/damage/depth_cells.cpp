@@ -144,7 +144,7 @@ void fill_rows(const Cells& cells, const RoadSurface& surface, int first, int la
 }
 
 /// Standard deviation of the Gaussian that walls are spread by, cells: by the binomial mean, and by matching, of whose
-/// averaging a third is left at a wall, since refinement stops there (docs/accuracy.md).
+/// averaging a third is left at a wall, since refinement stops there (docs/constants.md).
 double wall_smoothing(const Cells& cells) {
   constexpr double of_binomial_mean = 1, share_at_walls = 1.0 / 3;
   return std::hypot(of_binomial_mean, share_at_walls * cells.smoothing_px / cells.factor);
