@@ -14,13 +14,12 @@
 #include "flight/bounded_queue.hpp"
 #include "flight/finish_frame.hpp"
 #include "flight/flight_job.hpp"
+#include "flight/flight_motion.hpp"
 #include "flight/match_frame.hpp"
 #include "flight/sequencer.hpp"
 #include "mask_file.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/flight_pictures.hpp"
-#include "roadstereo/odometry.hpp"
-#include "roadstereo/road_map.hpp"
 
 namespace roadstereo::cli {
 
@@ -42,7 +41,6 @@ class FlightPipeline {
   AutoMask make_mask() const;
   void reject_other_size(io::SourcePair& pair) const;
   void match_again(const io::SourcePair& pair, Pipeline& pipeline, FlightJob& job);
-  const FramePose& link(FlightJob& job, const StereoCalibration& calibration);
   void add_pose(FlightJob& job);
   void finish();
   void commit_frame(FlightJob& job);
@@ -59,13 +57,10 @@ class FlightPipeline {
   bool reached_end_ = false;
   int width_ = 0, height_ = 0;                 ///< of the first good pair
   const std::optional<io::FlightFrame> last_;  ///< of an earlier run
-  const int first_piece_;                      ///< of the motion, after those of an earlier run
-  int joined_piece_ = -1;                      ///< of this run's odometry: the one that goes on from `last_`
-  RigidTransform to_earlier_{};                ///< from its world to that of the earlier run
-  std::optional<Odometry> odometry_;           ///< without a trajectory
-  BoundedQueue<io::SourcePair> pairs_;         ///< from reader to matcher
-  BoundedQueue<JobPointer> matched_;           ///< from matcher to finishers
-  BoundedQueue<JobPointer> free_;              ///< unused jobs
+  FlightMotion motion_;
+  BoundedQueue<io::SourcePair> pairs_;  ///< from reader to matcher
+  BoundedQueue<JobPointer> matched_;    ///< from matcher to finishers
+  BoundedQueue<JobPointer> free_;       ///< unused jobs
   Sequencer sequencer_;
   FirstException failure_;
 };
@@ -95,7 +90,7 @@ FlightPipeline::FlightPipeline(const FlightSettings& settings, Flight& flight)
       finishers_(finisher_count(flight.plan.options)),
       from_first_(needs_frames_again(settings, flight)),
       last_(flight.journal.last()),
-      first_piece_(flight.results.motion_pieces()),
+      motion_(settings, flight, last_),
       pairs_(3),
       matched_(static_cast<std::size_t>(finishers_)),
       free_(static_cast<std::size_t>(2 * finishers_) + 1),
@@ -230,36 +225,10 @@ void FlightPipeline::match_again(const io::SourcePair& pair, Pipeline& pipeline,
   pipeline.restore(last_->pipeline_state);
 }
 
-/// Links a frame with those before it. Returns its pose.
-const FramePose& FlightPipeline::link(FlightJob& job, const StereoCalibration& calibration) {
-  const int threads = flight_.plan.options.threads;
-  if (!settings_.trajectory) {
-    if (!odometry_) odometry_.emplace(calibration, OdometryOptions{.kept_frames = 1, .threads = threads});
-    return odometry_->add(static_cast<int>(job.frame.index), job.result, job.frame.time_s);
-  }
-  if (!flight_.trajectory) flight_.trajectory.emplace(calibration, flight_.folder.path() / ".keyframes", threads);
-  job.pose = flight_.trajectory->add(job.frame, job.result);
-  return flight_.trajectory->last_pose();
-}
-
-/// Adds the pose of a frame, by which its damages are known again. The motion is that of frames of one size.
+/// The motion is that of frames of one size.
 void FlightPipeline::add_pose(FlightJob& job) {
-  const std::optional<StereoCalibration>& calibration = flight_.source.calibration();
-  if (!calibration || job.frame.status != io::FrameStatus::good) return;
-  if (job.result.grey.width() != width_ || job.result.grey.height() != height_) return;
-  const FramePose& pose = link(job, *calibration);
-  if (!job.result.roll_found) return;
-  const RigidTransform road_to_camera = inverse(camera_to_road(job.result.geometry.plane, *calibration));
-  const RigidTransform road_to_world = compose(pose.camera_to_world, road_to_camera);
-  if (last_ && last_->pose && job.frame.index == last_->index) {
-    joined_piece_ = pose.piece;
-    to_earlier_ = compose(last_->pose->road_to_world, inverse(road_to_world));
-  }
-  if (pose.piece == joined_piece_) {
-    job.frame.pose = {last_->pose->piece, compose(to_earlier_, road_to_world)};
-  } else {
-    job.frame.pose = {first_piece_ + pose.piece, road_to_world};
-  }
+  if (job.frame.status != io::FrameStatus::good) return;
+  if (job.result.grey.width() == width_ && job.result.grey.height() == height_) motion_.add_pose(job);
 }
 
 void FlightPipeline::finish() {
