@@ -6,69 +6,19 @@
 #include <sstream>
 
 #include "core/order_statistics.hpp"
+#include "graph/plane_motion.hpp"
 
 namespace roadstereo {
 namespace {
-
-using Point = Eigen::Vector2d;
-
-/// A frame and the fix at its time, horizontally.
-struct Match {
-  Point frame, fix;
-  double frame_z = 0, fix_z = 0;
-  double sd_m = 0;  ///< expected distance, per axis
-  bool has_z = false;
-};
-
-/// Turn about the vertical and shift.
-struct PlaneMotion {
-  double cosine = 1, sine = 0;
-  Point from = Point::Zero(), to = Point::Zero();  ///< centroids
-
-  Point operator()(const Point& p) const {
-    const Point d = p - from;
-    return to + Point(cosine * d.x() - sine * d.y(), sine * d.x() + cosine * d.y());
-  }
-};
-
-PlaneMotion least_squares(const std::vector<Match>& matches, const std::vector<char>& taken) {
-  PlaneMotion motion;
-  double count = 0;
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    if (!taken[i]) continue;
-    motion.from += matches[i].frame;
-    motion.to += matches[i].fix;
-    ++count;
-  }
-  motion.from /= count;
-  motion.to /= count;
-  double along = 0, across = 0;
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    if (!taken[i]) continue;
-    const Point a = matches[i].frame - motion.from, b = matches[i].fix - motion.to;
-    along += a.dot(b);
-    across += a.x() * b.y() - a.y() * b.x();
-  }
-  const double length = std::hypot(along, across);
-  if (length > 0) motion.cosine = along / length, motion.sine = across / length;
-  return motion;
-}
-
-std::vector<double> distances(const std::vector<Match>& matches, const PlaneMotion& motion) {
-  std::vector<double> result;
-  result.reserve(matches.size());
-  for (const Match& match : matches) result.push_back((motion(match.frame) - match.fix).norm());
-  return result;
-}
 
 /// Sums over what is left of successive matches.
 struct Correlation {
   double product = 0, squares = 0;
 
-  void add(const std::vector<Match>& matches, const PlaneMotion& motion, double most_m) {
-    Point last = Point::Zero();
-    for (const Match& match : matches) {
-      Point rest = motion(match.frame) - match.fix;
+  void add(const std::vector<TrackMatch>& matches, const PlaneMotion& motion, double most_m) {
+    Eigen::Vector2d last = Eigen::Vector2d::Zero();
+    for (const TrackMatch& match : matches) {
+      Eigen::Vector2d rest = motion(match.frame) - match.fix;
       rest *= std::min(1.0, most_m / std::max(rest.norm(), 1e-12));
       product += rest.dot(last);
       squares += rest.squaredNorm();
@@ -82,33 +32,6 @@ struct Correlation {
     return std::max(1.0, count * (1 - correlation) / (1 + correlation));
   }
 };
-
-/// How a piece fits.
-struct PieceFit {
-  PlaneMotion motion;
-  std::vector<double> distances_m;
-};
-
-PieceFit fit_piece(const std::vector<Match>& matches) {
-  constexpr double outlying = 3;  // medians
-  std::vector<char> taken(matches.size(), 1);
-  PieceFit fit{least_squares(matches, taken), {}};
-  std::vector<double> sorted = fit.distances_m = distances(matches, fit.motion);
-  const double limit = outlying * upper_median(sorted);
-  for (std::size_t i = 0; i < matches.size(); ++i) taken[i] = fit.distances_m[i] <= limit ? 1 : 0;
-  fit.motion = least_squares(matches, taken);
-  fit.distances_m = distances(matches, fit.motion);
-  return fit;
-}
-
-/// Largest distance of a frame from the mean of its piece.
-double extent(const std::vector<Match>& matches) {
-  Point mean = Point::Zero();
-  for (const Match& match : matches) mean += match.frame / static_cast<double>(matches.size());
-  double largest = 0;
-  for (const Match& match : matches) largest = std::max(largest, (match.frame - mean).norm());
-  return largest;
-}
 
 /// Fit at one time offset.
 struct OffsetFit {
@@ -174,9 +97,9 @@ class Aligner {
     std::vector<double> all, in_sd;
     Correlation correlation;
     for (std::size_t piece = 0; piece < level_.size(); ++piece) {
-      const std::vector<Match> matches = matches_of(piece, offset_s, mirrored, interval);
+      const std::vector<TrackMatch> matches = matches_of(piece, offset_s, mirrored, interval);
       if (!anchors(matches)) continue;
-      const PieceFit fitted = fit_piece(matches);
+      const PlaneMotionFit fitted = fit_plane_motion(matches);
       for (std::size_t i = 0; i < matches.size(); ++i) in_sd.push_back(fitted.distances_m[i] / matches[i].sd_m);
       all.insert(all.end(), fitted.distances_m.begin(), fitted.distances_m.end());
       std::vector<double> sorted = fitted.distances_m;
@@ -199,16 +122,16 @@ class Aligner {
   std::vector<std::optional<GraphPose>> pieces(double offset_s) const {
     std::vector<std::optional<GraphPose>> result(level_.size());
     for (std::size_t piece = 0; piece < level_.size(); ++piece) {
-      const std::vector<Match> matches = matches_of(piece, offset_s, false);
+      const std::vector<TrackMatch> matches = matches_of(piece, offset_s, false);
       if (!anchors(matches)) continue;
-      const PlaneMotion motion = fit_piece(matches).motion;
+      const PlaneMotion motion = fit_plane_motion(matches).motion;
       std::vector<double> lifts;
-      for (const Match& match : matches) {
+      for (const TrackMatch& match : matches) {
         if (match.has_z) lifts.push_back(match.fix_z - match.frame_z);
       }
       const Eigen::Quaterniond turn(
           Eigen::AngleAxisd(std::atan2(motion.sine, motion.cosine), Eigen::Vector3d::UnitZ()));
-      const Point shift = motion(Point::Zero());
+      const Eigen::Vector2d shift = motion(Eigen::Vector2d::Zero());
       const double lift = lifts.empty() ? 0 : upper_median(lifts);
       result[piece] = GraphPose{{shift.x(), shift.y(), lift}, turn * *level_[piece]};
     }
@@ -218,7 +141,7 @@ class Aligner {
   double largest_extent(double offset_s) const {
     double largest = 0;
     for (std::size_t piece = 0; piece < level_.size(); ++piece) {
-      const std::vector<Match> matches = matches_of(piece, offset_s, false);
+      const std::vector<TrackMatch> matches = matches_of(piece, offset_s, false);
       if (!matches.empty()) largest = std::max(largest, extent(matches));
     }
     return largest;
@@ -230,13 +153,13 @@ class Aligner {
 
  private:
   /// A piece has a direction if it is longer than its positions are uncertain.
-  static bool anchors(const std::vector<Match>& matches) {
+  static bool anchors(const std::vector<TrackMatch>& matches) {
     return matches.size() >= 2 && extent(matches) > matches.front().sd_m;
   }
 
-  std::vector<Match> matches_of(std::size_t piece, double offset_s, bool mirrored,
-                                const Interval& interval = {}) const {
-    std::vector<Match> matches;
+  std::vector<TrackMatch> matches_of(std::size_t piece, double offset_s, bool mirrored,
+                                     const Interval& interval = {}) const {
+    std::vector<TrackMatch> matches;
     if (!level_[piece]) return matches;
     for (const TimedPosition& frame : frames_[piece]) {
       const double time_s = frame.time_s + offset_s;
