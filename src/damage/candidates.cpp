@@ -138,6 +138,12 @@ std::optional<Candidate> candidate_around(const SearchInput& input, const Core& 
   return candidate;
 }
 
+/// Surroundings of a core, in which others may be parts of the same damage.
+CellBox surroundings(const Core& core, const Image<float>& depth) {
+  const CellBox& box = core.cells.box;
+  return box.grown(std::max(box.columns(), box.rows()), depth.width(), depth.height());
+}
+
 /// Search for one kind of damage, from the largest core to the smallest. Threads examine the next few cores together,
 /// each as if the others were no damage. Where one is, those that have read its labels are examined again, so that the
 /// result is that of one after the other.
@@ -153,18 +159,18 @@ class KindSearch {
         visited_(static_cast<std::size_t>(resolve_threads(threads))) {}
 
   void add_candidates(std::vector<Candidate>& found) {
-    constexpr std::size_t max_at_once = 16, growth = 4;
+    constexpr std::size_t growth = 4;
     Cores all(depth_, core_cells(depth_, allowed_, input_.thresholds), input_.thresholds);
     std::vector<Core>& cores = all.cores();
     std::erase_if(cores, [&](const Core& core) {
       return !core.is_divided && is_obstacle(input_, core.cells, kind_, depth_, assigned_);
     });
-    // Few until one is no damage: others may be parts of the same.
+    // Of cores beside each other few until one is no damage: others may be parts of the same.
     std::size_t at_once = 1;
     for (std::span<const Core> left = cores; !left.empty();) {
       SearchImages images = images_of(0);
       if (!is_assigned(left.front())) remove_outliers(input_, left.front().cells, kind_, images);
-      const auto next = left.first(count_without_outliers(left, at_once));
+      const auto next = left.first(count_at_once(left, at_once));
       const std::size_t before = found.size(), done = accept(next, examine(next), found);
       at_once = found.size() > before ? 1 : std::min(growth * at_once, max_at_once);
       left = left.subspan(done);
@@ -172,6 +178,8 @@ class KindSearch {
   }
 
  private:
+  static constexpr std::size_t max_at_once = 16;
+
   struct Examined {
     std::optional<Candidate> candidate;
     CellBox labels_read;
@@ -192,11 +200,22 @@ class KindSearch {
     });
   }
 
-  /// Number of the first cores, up to `most`, of which those after the first one have no outliers.
-  std::size_t count_without_outliers(std::span<const Core> cores, std::size_t most) const {
+  /// Number of the first cores to examine together: `beside` that may be parts of the same damage, and more as long as
+  /// they lie apart. Those after the first one have no outliers.
+  std::size_t count_at_once(std::span<const Core> cores, std::size_t beside) const {
     std::size_t count = 1;
-    while (count < std::min(most, cores.size()) && !has_outliers(input_, cores[count].cells, kind_, depth_)) ++count;
+    while (count < std::min(max_at_once, cores.size()) &&
+           (count < beside || lies_apart(cores[count], cores.first(count))) &&
+           !has_outliers(input_, cores[count].cells, kind_, depth_)) {
+      ++count;
+    }
     return count;
+  }
+
+  bool lies_apart(const Core& core, std::span<const Core> others) const {
+    const CellBox box = surroundings(core, depth_);
+    return std::none_of(others.begin(), others.end(),
+                        [&](const Core& other) { return surroundings(other, depth_).overlaps(box); });
   }
 
   std::vector<Examined> examine(std::span<const Core> cores) {

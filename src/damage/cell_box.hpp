@@ -37,6 +37,16 @@ struct CellBox {
     return std::max(first_column, box.first_column) <= std::min(last_column, box.last_column) &&
            std::max(first_row, box.first_row) <= std::min(last_row, box.last_row);
   }
+  /// Box with margins of that many cells.
+  CellBox grown(int columns, int rows) const {
+    return {first_column - columns, first_row - rows, last_column + columns, last_row + rows};
+  }
+  /// Part inside another box; empty if there is none.
+  CellBox clipped(const CellBox& box) const {
+    const CellBox part{std::max(first_column, box.first_column), std::max(first_row, box.first_row),
+                       std::min(last_column, box.last_column), std::min(last_row, box.last_row)};
+    return part.empty() || part.rows() <= 0 ? CellBox() : part;
+  }
   /// Box with a margin of that many cells, clipped to width×height cells.
   CellBox grown(int margin, int width, int height) const {
     return {std::max(0, first_column - margin), std::max(0, first_row - margin),

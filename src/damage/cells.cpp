@@ -7,12 +7,11 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "damage/pixel_sums.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
 namespace {
-
-constexpr float max_sigma_px = 1;
 
 /// Squared error of smoothing of a hollow narrower than `reach`, pixels², along the directions in which both sides rise
 /// about alike; 0 on walls. Smoothing takes from the depth of such a hollow; that it is one is certain.
@@ -29,45 +28,17 @@ float hollow_error2(ImageView<const float> map, int reach, int u, int v) {
   return sum;
 }
 
-bool has_uncertain(const float* sigma, int width) {
-  int count = 0;
-  for (int u = 0; u < width; ++u) count += sigma[u] > max_sigma_px ? 1 : 0;
-  return count > 0;
-}
-
-/// Column sums over the pixel rows of one row of cells.
-struct ColumnSums {
-  std::vector<float> sum;
-  std::vector<int> count;  ///< valid pixels
-
-  explicit ColumnSums(int columns) : sum(static_cast<std::size_t>(columns)), count(static_cast<std::size_t>(columns)) {}
-  void clear() {
-    std::fill(sum.begin(), sum.end(), 0.0F);
-    std::fill(count.begin(), count.end(), 0);
-  }
-  /// Add the valid pixels of an image row.
-  void add(const float* values, const float* sigma, int width) {
-    float* const sums = sum.data();
-    int* const counts = count.data();
-    for (int u = 0; u < width; ++u) {
-      const int finite = std::abs(values[u]) <= max_map_value ? 1 : 0;
-      const int uncertain = sigma[u] > max_sigma_px ? 1 : 0;
-      const int valid = finite & ~uncertain;
-      counts[u] += valid;
-      sums[u] += valid != 0 ? values[u] : 0.0F;
-    }
-  }
-};
-
 /// Means of a row of cells of `rows` × `factor` pixels, whose last one the border of the image may clip. The sums have
 /// `factor` columns for that one, too.
-void mean_row(const ColumnSums& columns, int factor, int rows, int width, int cells, float* means) {
+void mean_row(const PixelSums& columns, int factor, int rows, int width, int cells, float* means) {
+  const float* const sums = columns.sum.data();
+  const int* const counts = columns.count.data();
   for (int i = 0; i < cells; ++i) {
     float sum = 0;
     int count = 0;
     for (int k = i * factor; k < (i + 1) * factor; ++k) {
-      sum += columns.sum[static_cast<std::size_t>(k)];
-      count += columns.count[static_cast<std::size_t>(k)];
+      sum += sums[k];
+      count += counts[k];
     }
     const bool valid = count > 0 && 2 * count >= rows * std::min(factor, width - i * factor);
     means[i] = valid ? sum / static_cast<float>(count) : std::numeric_limits<float>::quiet_NaN();
@@ -123,7 +94,7 @@ Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigm
   cells.smoothing_px = smoothing_px;
   cells.value.resize((transformed.width() + factor - 1) / factor, (height + factor - 1) / factor);
   parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
-    ColumnSums columns(cells.width() * factor);
+    PixelSums columns(cells.width() * factor);
     const std::vector<float> zero_sigma(sigma.empty() ? static_cast<std::size_t>(width) : 0, 0.0F);
     std::vector<float> own(sigma.empty() ? 0 : static_cast<std::size_t>(width));
     for (int j = first; j < last; ++j) {

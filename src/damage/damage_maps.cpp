@@ -50,9 +50,11 @@ float measured_depth(float surface, float measured) {
 
 /// Upsample a row of cells by replication.
 void replicate_row(const std::uint8_t* cells, int factor, int width, std::uint8_t* pixels) {
-  for (int i = 0, u = 0; u < width; ++i) {
-    for (const int end = std::min(u + factor, width); u < end; ++u) pixels[u] = cells[i];
+  const int whole = width / factor;
+  for (int k = 0; k < factor; ++k) {
+    for (int i = 0; i < whole; ++i) pixels[i * factor + k] = cells[i];
   }
+  for (int u = whole * factor; u < width; ++u) pixels[u] = cells[whole];
 }
 
 }  // namespace

@@ -37,22 +37,23 @@ Image<std::uint8_t> cells_near_surface(const Cells& cells, const SurfaceCoordina
   return near;
 }
 
-/// For each column, the rows since the last set cell above, as long as all between lie within a pixel of the surface;
-/// `limit` otherwise. `closed`: that number where a gap ends in this row, else 0. Returns whether any does.
-bool update_gaps(const std::uint8_t* mask, const float* value, const float* road, int width, std::uint8_t limit,
-                 std::uint8_t* gaps, std::uint8_t* closed) {
+/// Mark the cells within a pixel of the surface, as those of a band of errors are.
+void mark_band(const float* value, const float* road, int width, std::uint8_t* band) {
   constexpr float max_band_error = 1;  // pixels
-  std::uint8_t any = 0;
+  for (int i = 0; i < width; ++i) band[i] = std::abs(value[i] - road[i]) <= max_band_error ? 255 : 0;
+}
+
+/// For each column, the rows since the last set cell above, as long as all between lie in a band; `limit` otherwise.
+/// `closed`: that number where a gap ends in this row, else 0.
+void update_gaps(const std::uint8_t* mask, const std::uint8_t* band, int width, std::uint8_t limit, std::uint8_t* gaps,
+                 std::uint8_t* closed) {
   for (int i = 0; i < width; ++i) {
     const std::uint8_t gap = gaps[i], is_set = mask[i];
-    const std::uint8_t ends = is_set != 0 && gap < limit ? gap : std::uint8_t{0};
-    const bool continues = std::abs(value[i] - road[i]) <= max_band_error && gap < limit;
     const auto longer = static_cast<std::uint8_t>(gap + 1);
-    gaps[i] = is_set != 0 ? std::uint8_t{0} : continues ? longer : limit;
-    closed[i] = ends;
-    any |= ends;
+    const std::uint8_t after = band[i] != 0 ? std::min(longer, limit) : limit, ended = gap < limit ? gap : 0;
+    gaps[i] = after & ~is_set;
+    closed[i] = ended & is_set;
   }
-  return any != 0;
 }
 
 /// Close gaps of a mask along the columns, of up to `max_gap` cells that all lie within a pixel of the surface. Blocks
@@ -61,13 +62,12 @@ Image<std::uint8_t> close_bands(const Image<std::uint8_t>& mask, const Cells& ce
                                 int max_gap) {
   const auto limit = static_cast<std::uint8_t>(max_gap + 1);
   Image<std::uint8_t> result = mask;
-  std::vector<std::uint8_t> gaps(static_cast<std::size_t>(mask.width()), limit), closed(gaps.size());
+  const int width = mask.width();
+  std::vector<std::uint8_t> gaps(static_cast<std::size_t>(width), limit), closed(gaps.size()), band(gaps.size());
   for (int j = 0; j < mask.height(); ++j) {
-    if (!update_gaps(mask.row(j), cells.value.row(j), surface.value.row(j), mask.width(), limit, gaps.data(),
-                     closed.data())) {
-      continue;
-    }
-    for (int i = 0; i < mask.width(); ++i) {
+    mark_band(cells.value.row(j), surface.value.row(j), width, band.data());
+    update_gaps(mask.row(j), band.data(), width, limit, gaps.data(), closed.data());
+    for (int i = next_nonzero(closed.data(), 0, width); i < width; i = next_nonzero(closed.data(), i + 1, width)) {
       for (int k = closed[static_cast<std::size_t>(i)]; k > 0; --k) result(i, j - k) = 255;
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -34,7 +35,17 @@ class RoadUndulation {
     int column, row;
     float right, up;
   };
-  Place place(float x, float y) const;
+  /// Inline for the loop over many, which is vectorised.
+  Place place(float x, float y) const {
+    // The order of the operands turns NaN into 0.
+    const auto between = [this](float from_first, int nodes) {
+      return std::min(std::max(0.0F, from_first * per_metre_), static_cast<float>(nodes - 1));
+    };
+    const float column = between(x - first_x_, heights_.width()), row = between(y - first_y_, heights_.height());
+    const int i = std::min(static_cast<int>(column), heights_.width() - 2);
+    const int j = std::min(static_cast<int>(row), heights_.height() - 2);
+    return {i, j, column - static_cast<float>(i), row - static_cast<float>(j)};
+  }
   float height(const Place& at) const {
     const float *const low = heights_.row(at.row) + at.column, *const high = low + heights_.width();
     const float below = low[0] + at.right * (low[1] - low[0]), above = high[0] + at.right * (high[1] - high[0]);

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "core/binned_selection.hpp"
+#include "core/order_statistics.hpp"
 
 namespace roadstereo {
 
@@ -17,9 +19,10 @@ struct RobustNormal {
 /// Estimate the distribution of a sample; `values` are overwritten. An empty sample gives zeros.
 inline RobustNormal robust_normal(std::vector<float>& values) {
   if (values.empty()) return {};
-  const float median = binned_median(values);
+  const auto [low, high] = range_of(values);
+  const float median = binned_median(values, low, high), farthest = std::max(high - median, median - low);
   for (float& value : values) value = std::abs(value - median);
-  return {median, gaussian_mad * binned_median(values), values.size()};
+  return {median, gaussian_mad * binned_median(values, 0, farthest), values.size()};
 }
 
 }  // namespace roadstereo

@@ -1,6 +1,7 @@
 #include "damage/transverse_profile.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <vector>
 
 #include "damage/road_surface.hpp"
@@ -37,8 +36,10 @@ struct HeightGrid {
   double first_m = 0;  ///< across the road
   Image<double> heights;
 
+  /// Negative before the first one.
   int column(double x, double y) const {
-    return static_cast<int>(std::floor((direction.across(x, y) - first_m) * (1 / profile_bin_m)));
+    const double at = (direction.across(x, y) - first_m) * (1 / profile_bin_m);
+    return at < 0 ? -1 : static_cast<int>(at);
   }
 };
 

@@ -6,6 +6,7 @@
 
 #include "core/cholesky.hpp"
 #include "core/order_statistics.hpp"
+#include "core/parallel.hpp"
 #include "core/require_size.hpp"
 #include "pipeline/picture_health.hpp"
 #include "pipeline/rectification_error.hpp"
@@ -123,11 +124,23 @@ PairHealth measure_health(const FrameResult& frame, const DamageMap& damage,
   health.threshold_sigma = options.threshold_sigma;
   if (!frame.roll_found || frame.grey.empty() || frame.right.empty()) return health;
   require_same_size("the damage map", map_size(damage.road), "the disparity map", map_size(frame.disparity));
-  measure_rectification(frame, damage, calibration, threads, health);
   health.noise_px = damage.noise_px;
-  health.wave_px = measure_wave(frame, damage);
-  measure_pictures(frame, damage, health);
-  if (!frame.sigma.empty()) health.infinity_px = measure_infinity(frame, calibration);
+  constexpr int parts = 4;
+  parallel_for(parts, threads, [&](int part, int) {
+    switch (part) {
+      case 0:
+        measure_rectification(frame, damage, calibration, threads, health);
+        break;
+      case 1:
+        measure_pictures(frame, damage, threads, health);
+        break;
+      case 2:
+        health.wave_px = measure_wave(frame, damage);
+        break;
+      default:
+        if (!frame.sigma.empty()) health.infinity_px = measure_infinity(frame, calibration);
+    }
+  });
   return health;
 }
 

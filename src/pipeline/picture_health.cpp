@@ -10,6 +10,7 @@
 #include "core/block_grid.hpp"
 #include "core/deblocking.hpp"
 #include "core/order_statistics.hpp"
+#include "core/parallel.hpp"
 #include "pipeline/stripe_noise.hpp"
 
 namespace roadstereo {
@@ -220,13 +221,29 @@ double block_steps(double measured, Grey image) {
 
 }  // namespace
 
-void measure_pictures(const FrameResult& frame, const DamageMap& damage, PairHealth& health) {
-  measure_exposure(frame, damage, health);
-  health.blur_left_px = blur_of(frame.grey, damage);
-  health.blur_right_px = blur_of(frame.right, damage);
-  measure_noise(frame, damage, health);
-  health.blocks_left = block_steps(frame.block_steps[0], frame.grey);
-  health.blocks_right = block_steps(frame.block_steps[1], frame.right);
+void measure_pictures(const FrameResult& frame, const DamageMap& damage, int threads, PairHealth& health) {
+  constexpr int figures = 6;
+  parallel_for(figures, threads, [&](int figure, int) {
+    switch (figure) {
+      case 0:
+        measure_noise(frame, damage, health);
+        break;
+      case 1:
+        measure_exposure(frame, damage, health);
+        break;
+      case 2:
+        health.blur_left_px = blur_of(frame.grey, damage);
+        break;
+      case 3:
+        health.blur_right_px = blur_of(frame.right, damage);
+        break;
+      case 4:
+        health.blocks_left = block_steps(frame.block_steps[0], frame.grey);
+        break;
+      default:
+        health.blocks_right = block_steps(frame.block_steps[1], frame.right);
+    }
+  });
 }
 
 }  // namespace roadstereo

@@ -171,7 +171,7 @@ double measured_blur(int width, int height, double sigma_px, Scenery scenery) {
   DamageMap damage = make_empty_damage_map(width, height, "");
   std::fill_n(damage.road.row(0), damage.road.pixels(), std::uint8_t{255});
   PairHealth health;
-  measure_pictures(frame, damage, health);
+  measure_pictures(frame, damage, 1, health);
   return health.blur_left_px;
 }
 
