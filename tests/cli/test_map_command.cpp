@@ -135,6 +135,21 @@ TEST_F(SlowMapCommand, SaysWhatChangedBetweenDays) {
   expect_complaint(run("map uav flat --calibration uav/calibration.yaml --day spring --output days" + poses), "1 days");
 }
 
+// 1 717 200 000 s is the first of June 2024, 0:00 UTC. The first pair of both recordings has no left image, which has
+// its time.
+TEST_F(MapCommand, DayIsThatOfFirstGoodPair) {
+  make_flight("160x90");
+  std::filesystem::remove(folder_ / "flight/left/000000.png");
+  std::filesystem::copy(folder_ / "flight", folder_ / "later", std::filesystem::copy_options::recursive);
+  write("flight/times.txt", std::string("1717200000\n"));
+  write("later/times.txt", std::string("1717286400\n"));
+  const Outcome outcome =
+      run("map flight later --calibration flight/calibration.yaml --output map --quiet "
+          "--trajectory flight/trajectory_kitti.txt --trajectory later/trajectory_kitti.txt");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(json_file("map/map.json")["days"], nlohmann::json({"2024-06-01", "2024-06-02"}));
+}
+
 TEST_F(MapCommand, RunIsMappedWithItsOwnOptions) {
   make_flight("256x144");
   ASSERT_EQ(run("inspect flight --trajectory --preset fast --output run --quiet").exit_code, 0);

@@ -188,8 +188,8 @@ class MapBuilder {
 
   void add_pair(const MapPass& from, const RectifiedSource& source, const io::SourcePair& pair, const FramePose& pose,
                 std::optional<Pipeline>& pipeline) {
-    if (!state_.day) state_.day = day_of(from, pair.time_s);
     if (!pair.error.empty()) return add_reason(pair.error);
+    if (!state_.day) state_.day = day_of(from, pair.time_s);
     if (!pipeline) {
       if (from.options.rig_bias) {
         from.options.rig_bias->require_rig(pair.left.width, pair.left.height, source.calibration());
@@ -202,7 +202,7 @@ class MapBuilder {
     state_.pipeline = pipeline->carried();
   }
 
-  /// Index of the day of a recording whose first frame has this time.
+  /// Index of the day of a recording whose first good pair has this time.
   std::size_t day_of(const MapPass& pass, double time_s) {
     std::string name = io::valid_utf8(pass.day);
     const auto time = io::utc_time(time_s + pass.time_offset_s);

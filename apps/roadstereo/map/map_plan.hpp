@@ -20,7 +20,7 @@ struct MapPass {
   PipelineOptions options;
   bool find_white_level = true;  ///< determines it from the pairs of a 16-bit source
   Image<std::uint8_t> mask;      ///< not 0 left out; empty: none
-  std::string day;               ///< empty: by the time of its first frame
+  std::string day;               ///< empty: by the time of its first good pair
   double time_offset_s = 0;      ///< added to the times of the frames
 };
 
