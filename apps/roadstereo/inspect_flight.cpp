@@ -101,6 +101,9 @@ std::string add_map(const FlightSettings& settings, const FlightPlan& plan, cons
   pass.source_options = plan.source;
   pass.calibration = settings.calibration;
   pass.trajectory = (folder.path() / trajectory_file_names().front()).string();
+  pass.from = settings.from;
+  pass.to = settings.to;
+  pass.every = settings.every;
   pass.options = plan.options;
   pass.find_white_level = plan.find_white_level;
   constexpr int white = 255;

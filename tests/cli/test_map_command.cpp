@@ -66,6 +66,18 @@ TEST_F(MapCommand, SaysHowManyFramesHaveNoPose) {
   EXPECT_EQ(result["reasons"][0], "1 of 2 frames have no pose in one.txt");
 }
 
+// Frames 1 and 3 of five: no others were asked for.
+TEST_F(MapCommand, FramesLeftOutByInspectNeedNoPose) {
+  const Outcome made = run("synth --scene nadir --frames 5 --flight step=0.1 --size 256x144 --output flight --quiet");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Outcome outcome = run("inspect flight --map --from 1 --to 3 --every 2 --output run --quiet");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(json_file("run/map/map.json")["frames"], 2);
+  EXPECT_TRUE(json_file("run/map/map.json")["reasons"].empty()) << json_file("run/map/map.json")["reasons"];
+  ASSERT_EQ(run("map run --output map --quiet").exit_code, 0);
+  EXPECT_TRUE(json_file("map/map.json")["reasons"].empty()) << json_file("map/map.json")["reasons"];
+}
+
 /// What a standing camera shows again and again says the same once more: the map is that of one frame of each place.
 TEST_F(MapCommand, FramesOfStandingCameraCountOnce) {
   make_flight("320x180");

@@ -181,8 +181,13 @@ class MapBuilder {
   void tell_missing_poses(const Pass& pass, const MapPass& from) {
     const std::optional<std::int64_t> size = pass.source->source().size();
     if (!size) return;
-    const std::int64_t frames = (*size + plan_.every - 1) / plan_.every;
-    const std::int64_t missing = frames - static_cast<std::int64_t>(pass.poses.size());
+    const std::int64_t end = from.to ? std::min(*from.to + 1, *size) : *size;
+    std::int64_t frames = 0, missing = 0;
+    for (std::int64_t frame = from.from; frame < end; frame += from.every) {
+      if (frame % plan_.every != 0) continue;
+      ++frames;
+      missing += pass.poses.count(frame) == 0;
+    }
     if (missing > 0) add_reason(fmt::format("{} of {} frames have no pose in {}", missing, frames, from.trajectory));
   }
 
