@@ -175,7 +175,7 @@ TEST(Pictures, ResultSheetHasBoundedSize) {
       Frame left{{}, width, height, SampleType::u16, order};
       left.bytes.assign(static_cast<std::size_t>(left.view().stride_bytes) * static_cast<std::size_t>(height), 3);
       const Frame sheet =
-          result_sheet(left.view(), disparity, transformed, 10, geometry, "a title that is rather long, ψ 3.1°");
+          result_sheet(left.view(), 0, disparity, transformed, 10, geometry, "a title that is rather long, ψ 3.1°");
       EXPECT_GE(sheet.width, 1600);
       EXPECT_LE(sheet.width, 2400);
       EXPECT_GE(sheet.height, 600);
@@ -187,7 +187,7 @@ TEST(Pictures, ResultSheetHasBoundedSize) {
 TEST(Pictures, ResultSheetOfEmptyResultIsValid) {
   const Image<float> nothing(640, 360, nan_value);
   const Frame left{std::vector<std::uint8_t>(640 * 360, 80), 640, 360, SampleType::u8, ChannelOrder::grey};
-  const Frame sheet = result_sheet(left.view(), nothing, nothing, 0, std::nullopt, "");
+  const Frame sheet = result_sheet(left.view(), 0, nothing, nothing, 0, std::nullopt, "");
   EXPECT_GE(sheet.width, 1600);
 }
 
