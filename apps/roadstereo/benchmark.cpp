@@ -37,7 +37,7 @@ struct BenchmarkArguments {
 };
 
 StereoPair make_pair(const BenchmarkArguments& arguments) {
-  if (!arguments.files.left.empty()) return read_pair(arguments.files);
+  if (!arguments.files.left.empty()) return read_pair(arguments.files, arguments.threads);
   const ImageSize size = parse_image_size(arguments.size);
   constexpr int largest = 8192;
   if (size.width > largest || size.height > largest) {

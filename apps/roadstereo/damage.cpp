@@ -67,7 +67,7 @@ DamageMap find_in(const TransformedMap& map, double white_level, const DamageArg
 
 void run(const DamageArguments& arguments) {
   make_options(arguments.settings, arguments.severity);  // checked first
-  const TransformedMap map = read_transformed_map(arguments.files);
+  const TransformedMap map = read_transformed_map(arguments.files, arguments.threads);
   if (is_pair_folder(arguments.output) || is_flight_folder(arguments.output)) {
     fail(arguments.output, ": this folder has the results of inspect; choose another one");
   }

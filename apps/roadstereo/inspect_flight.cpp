@@ -151,7 +151,7 @@ void inspect_flight(FlightSettings settings) {
   if (settings.calibration.empty() && !frames->calibration_file().empty()) {
     settings.calibration = {frames->calibration_file()};
   }
-  RectifiedSource source(std::move(frames), settings.calibration);
+  RectifiedSource source(std::move(frames), settings.calibration, plan.options.threads);
   if (source.source().live()) fail(settings.source[0], ": cameras are not supported by inspect; use roadstereo live");
   if (!plan.find_white_level) source.ignore_white_level();
   require_calibration(plan, settings.trajectory, source);
