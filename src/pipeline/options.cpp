@@ -200,6 +200,20 @@ requires std::is_enum_v<Enum> std::string to_text(Enum value) {
   return "";
 }
 
+constexpr OptionKind kind_of(bool) {
+  return OptionKind::boolean;
+}
+constexpr OptionKind kind_of(int) {
+  return OptionKind::whole;
+}
+constexpr OptionKind kind_of(double) {
+  return OptionKind::real;
+}
+template <class Word>
+OptionKind kind_of(const Word&) {
+  return OptionKind::word;
+}
+
 [[noreturn]] void refuse(const std::string& key, const std::string& value, const std::string& wanted) {
   fail("'", value, "' is not a valid value of ", key, "; it takes ", wanted);
 }
@@ -265,9 +279,7 @@ std::string nearest_key(const PipelineOptions& options, const std::string& key) 
 std::vector<OptionText> list_options(const PipelineOptions& options) {
   std::vector<OptionText> list;
   visit_options(options, [&](const char* key, const auto& value, const char* description) {
-    using Value = std::decay_t<decltype(value)>;
-    constexpr bool is_text = std::is_enum_v<Value> || std::is_same_v<Value, std::string>;
-    list.push_back({key, to_text(value), description, is_text});
+    list.push_back({key, to_text(value), description, kind_of(value)});
   });
   return list;
 }
