@@ -33,7 +33,7 @@ struct Loaded {
   LinkReference reference;
   double disparity_offset_px = 0;
 
-  FrameMaps view() const { return {pyramid, maps.disparity, maps.sigma, disparity_offset_px}; }
+  LinkMaps view() const { return {pyramid, maps.disparity, maps.sigma, disparity_offset_px}; }
 };
 
 RigidMotion motion_between(const Trajectory& trajectory, int from, int to) {

@@ -260,7 +260,7 @@ RigidMotion solve_motion(const std::vector<Match>& matches, const StereoCalibrat
 
 }  // namespace
 
-RigidMotion match_patches(const ReferencePoints& reference, const FrameMaps& current,
+RigidMotion match_patches(const ReferencePoints& reference, const LinkMaps& current,
                           const StereoCalibration& calibration, const RigidMotion& start, double offset_px, int level,
                           int radius) {
   Search search(current.pyramid.level(level), level, radius);
@@ -278,7 +278,7 @@ RigidMotion match_patches(const ReferencePoints& reference, const FrameMaps& cur
   return solve_motion(matches, calibration, start, min_scale_px);
 }
 
-double patch_correlation(const ReferencePoints& reference, const FrameMaps& current,
+double patch_correlation(const ReferencePoints& reference, const LinkMaps& current,
                          const StereoCalibration& calibration, const RigidMotion& motion, double offset_px) {
   constexpr int level = 1;
   if (current.pyramid.levels() <= level) return 0;

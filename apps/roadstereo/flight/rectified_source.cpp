@@ -52,7 +52,7 @@ void RectifiedSource::rectify(io::SourcePair& pair) {
   if (!pair.error.empty()) return;
   try {
     if (!prepared_) prepare(pair);
-    const double needed = needed_white_level(pair);  // the rectified images overshoot
+    const double needed = needed_white_level(pair);  // of all pixels: rectification crops
     if (rectifier_) {
       io::RectifiedPair rectified = rectifier_->rectify(pair.left, pair.right);
       pair.left = std::move(rectified.left);
