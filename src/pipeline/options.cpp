@@ -1,11 +1,11 @@
 #include "roadstereo/options.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <utility>
 
 #include "core/edit_distance.hpp"
+#include "core/shortest_text.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -186,11 +186,8 @@ std::string to_text(bool value) {
 std::string to_text(int value) {
   return std::to_string(value);
 }
-/// The shortest text that reads back as the same number.
 std::string to_text(double value) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
+  return shortest_text(value);
 }
 template <class Enum>
 requires std::is_enum_v<Enum> std::string to_text(Enum value) {
