@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/order_statistics.hpp"
+#include "core/parabola.hpp"
 #include "core/tukey.hpp"
 #include "odometry/direct_alignment.hpp"
 
@@ -190,10 +191,9 @@ class Search {
   }
 
   /// Maximum of the parabola through three values, −½ … ½.
-  static double vertex(float before, float middle, float after) {
-    const double bend = static_cast<double>(before) + static_cast<double>(after) - 2 * static_cast<double>(middle);
-    return bend < 0 ? std::clamp((static_cast<double>(before) - static_cast<double>(after)) / (2 * bend), -0.5, 0.5)
-                    : 0;
+  static double vertex(double before, double middle, double after) {
+    return second_difference(before, middle, after) < 0 ? std::clamp(parabola_vertex(before, middle, after), -0.5, 0.5)
+                                                        : 0;
   }
 
   ImageView<const std::int16_t> image_;
