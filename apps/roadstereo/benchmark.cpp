@@ -2,11 +2,9 @@
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <fstream>
 #include <memory>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -14,6 +12,7 @@
 #include "benchmark_frames.hpp"
 #include "benchmark_report.hpp"
 #include "commands.hpp"
+#include "core/parallel.hpp"
 #include "evaluation/peer_matchers.hpp"
 #include "image_size.hpp"
 #include "roadstereo/device.hpp"
@@ -37,7 +36,7 @@ struct BenchmarkArguments {
 };
 
 StereoPair make_pair(const BenchmarkArguments& arguments) {
-  if (!arguments.files.left.empty()) return read_pair(arguments.files);
+  if (!arguments.files.left.empty()) return read_pair(arguments.files, arguments.threads);
   const ImageSize size = parse_image_size(arguments.size);
   constexpr int largest = 8192;
   if (size.width > largest || size.height > largest) {
@@ -111,8 +110,7 @@ BenchmarkReport measure(const BenchmarkArguments& arguments) {
   report.disparities = result.shift.disparities;
   report.preset = arguments.preset;
   report.engine = pipeline.engine_name();
-  report.threads =
-      arguments.threads > 0 ? arguments.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  report.threads = resolve_threads(arguments.threads);
   report.cpu = cpu_name();
   report.target = find_engine(report.engine).description;
   if (before) report.scratch_bytes = allocations()->peak_bytes - before->live_bytes;

@@ -49,12 +49,9 @@ DamageOptions make_options(const std::vector<std::string>& settings, const std::
   return options.damage;
 }
 
-DamageMap find_in(const TransformedMap& map, const DamageArguments& arguments) {
+DamageMap find_in(const TransformedMap& map, double white_level, const DamageArguments& arguments) {
   GreyImage grey;
-  if (map.image) {
-    const FrameView image = map.image->view();
-    to_grey(image, image.sample == SampleType::u16 ? io::find_white_level(image, image) : 0, grey);
-  }
+  if (map.image) to_grey(map.image->view(), white_level, grey);
   DamageInput input;
   input.transformed = map.transformed;
   input.grey = grey;
@@ -70,7 +67,7 @@ DamageMap find_in(const TransformedMap& map, const DamageArguments& arguments) {
 
 void run(const DamageArguments& arguments) {
   make_options(arguments.settings, arguments.severity);  // checked first
-  const TransformedMap map = read_transformed_map(arguments.files);
+  const TransformedMap map = read_transformed_map(arguments.files, arguments.threads);
   if (is_pair_folder(arguments.output) || is_flight_folder(arguments.output)) {
     fail(arguments.output, ": this folder has the results of inspect; choose another one");
   }
@@ -79,9 +76,11 @@ void run(const DamageArguments& arguments) {
   for (const auto& inputs : {std::vector{files.transformed, files.image, files.disparity}, files.calibration}) {
     for (const std::string& input : inputs) folder.protect(input);
   }
-  const DamageMap damage = find_in(map, arguments);
+  const double white_level = map.image ? io::find_white_level(map.image->view(), map.image->view()) : 0;
+  const DamageMap damage = find_in(map, white_level, arguments);
   io::DamageReportInput report{damage};
   if (map.image) report.left = map.image->view();
+  report.white_level = white_level;
   if (map.disparity) report.disparity = *map.disparity;
   report.transformed = map.transformed;
   report.calibration = map.calibration;

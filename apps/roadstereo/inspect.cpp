@@ -130,7 +130,7 @@ void inspect_pair(const FlightSettings& settings) {
   inspection.options = make_options(settings);
   inspection.preset = settings.processing.preset;
   inspection.files = pair_files(settings);
-  inspection.pair = read_pair(inspection.files);
+  inspection.pair = read_pair(inspection.files, inspection.options.threads);
   if (wants_cloud && !inspection.pair.calibration) fail("--write cloud needs --calibration");
   inspection.head = settings.head;
   inspection.mask_file = settings.mask;

@@ -102,6 +102,9 @@ std::string add_map(const FlightSettings& settings, const FlightPlan& plan, cons
   pass.source_options = plan.source;
   pass.calibration = settings.calibration;
   pass.trajectory = (folder.path() / trajectory_file_names().front()).string();
+  pass.from = settings.from;
+  pass.to = settings.to;
+  pass.every = settings.every;
   pass.options = plan.options;
   pass.find_white_level = plan.find_white_level;
   constexpr int white = 255;
@@ -149,7 +152,7 @@ void inspect_flight(FlightSettings settings) {
   if (settings.calibration.empty() && !frames->calibration_file().empty()) {
     settings.calibration = {frames->calibration_file()};
   }
-  RectifiedSource source(std::move(frames), settings.calibration);
+  RectifiedSource source(std::move(frames), settings.calibration, plan.options.threads);
   if (source.source().live()) fail(settings.source[0], ": cameras are not supported by inspect; use roadstereo live");
   if (!plan.find_white_level) source.ignore_white_level();
   require_calibration(plan, settings.trajectory, source);

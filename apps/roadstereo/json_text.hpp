@@ -3,10 +3,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "io/json_number.hpp"
+
 namespace roadstereo::cli {
 
-/// Returns a number, or null if it is not finite, which JSON cannot represent.
-nlohmann::ordered_json json_number(double value);
+using io::json_number;
 
 /// Serialises a document; invalid UTF-8, e.g. of file names, is replaced.
 std::string json_text(const nlohmann::ordered_json& document);

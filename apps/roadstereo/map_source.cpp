@@ -85,18 +85,18 @@ void scale_to_pixels(const MapFiles& files, TransformedMap& map) {
   }
 }
 
-DisparityPlane fit_road(const Image<float>& disparity, const std::string& file) {
+DisparityPlane fit_road(const Image<float>& disparity, const std::string& file, int threads) {
   try {
-    return estimate_roll(disparity, {}, std::nullopt, 0, {}).plane;
+    return estimate_roll(disparity, {}, std::nullopt, 0, {}, threads).plane;
   } catch (const Error& error) {
     fail(file, ": ", error.what());
   }
 }
 
-void read_disparity_map(const MapFiles& files, TransformedMap& map) {
+void read_disparity_map(const MapFiles& files, int threads, TransformedMap& map) {
   map.disparity = io::read_disparity(files.disparity);
   require_size(map.disparity->width(), map.disparity->height(), map.transformed, files.disparity, files);
-  map.plane = fit_road(*map.disparity, files.disparity);
+  map.plane = fit_road(*map.disparity, files.disparity, threads);
   scale_to_pixels(files, map);
 }
 
@@ -113,14 +113,14 @@ void read_rig(const MapFiles& files, TransformedMap& map) {
 
 }  // namespace
 
-TransformedMap read_transformed_map(const MapFiles& files) {
+TransformedMap read_transformed_map(const MapFiles& files, int threads) {
   TransformedMap map;
   map.transformed = io::read_disparity(files.transformed);
   if (!files.image.empty()) {
     map.image = io::read_frame(files.image);
     require_size(map.image->width, map.image->height, map.transformed, files.image, files);
   }
-  if (!files.disparity.empty()) read_disparity_map(files, map);
+  if (!files.disparity.empty()) read_disparity_map(files, threads, map);
   if (!files.calibration.empty()) read_rig(files, map);
   return map;
 }

@@ -27,8 +27,9 @@ struct TransformedMap {
   std::optional<StereoCalibration> calibration;
 };
 
-/// Reads the files. With a disparity map the scale of the transformed map, unknown in 16-bit PNG, is estimated. Throws
-/// Error naming the file if it is unreadable, of another size, of another scene, or 8-bit.
-TransformedMap read_transformed_map(const MapFiles& files);
+/// Reads the files. With a disparity map the scale of the transformed map, unknown in 16-bit PNG, is estimated by
+/// `threads` workers; 0 takes all cores. Throws Error naming the file if it is unreadable, of another size, of another
+/// scene, or 8-bit.
+TransformedMap read_transformed_map(const MapFiles& files, int threads = 0);
 
 }  // namespace roadstereo::cli

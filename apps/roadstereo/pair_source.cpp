@@ -17,8 +17,8 @@ void require_equal_sizes(const StereoPair& pair, const PairFiles& files) {
        " pixels, ", files.right, " has ", pair.right.width, "×", pair.right.height);
 }
 
-void rectify_pair(StereoPair& pair, const io::StereoRig& rig) {
-  io::RectifiedPair rectified = io::rectify(pair.left, pair.right, rig);
+void rectify_pair(StereoPair& pair, const io::StereoRig& rig, int threads) {
+  io::RectifiedPair rectified = io::rectify(pair.left, pair.right, rig, threads);
   pair.left = std::move(rectified.left);
   pair.right = std::move(rectified.right);
   pair.calibration = rectified.calibration;
@@ -32,7 +32,7 @@ void read_disparity_map(const std::string& path, StereoPair& pair) {
        "×", pair.left.height, " like the left image");
 }
 
-void apply_calibration(StereoPair& pair, const std::vector<std::string>& paths) {
+void apply_calibration(StereoPair& pair, const std::vector<std::string>& paths, int threads) {
   io::CalibrationFile file = io::read_calibration(paths[0], paths.size() > 1 ? paths[1] : "");
   file.select_size(pair.left.width, pair.left.height, paths[0]);
   pair.calibration_format = file.format;
@@ -40,7 +40,7 @@ void apply_calibration(StereoPair& pair, const std::vector<std::string>& paths) 
   if (file.rig && !pair.disparity.empty()) {
     fail(paths[0], ": the rig is not rectified; a disparity map needs the calibration of the rectified pair");
   }
-  if (file.rig) rectify_pair(pair, *file.rig);
+  if (file.rig) rectify_pair(pair, *file.rig, threads);
   if (!pair.calibration) fail(paths[0], ": there is no stereo calibration in this file");
   pair.calibration->validate(pair.left.width, pair.left.height, paths[0]);
 }
@@ -54,7 +54,7 @@ double white_level_of(const StereoPair& pair) {
 
 }  // namespace
 
-StereoPair read_pair(const PairFiles& files) {
+StereoPair read_pair(const PairFiles& files, int threads) {
   StereoPair pair;
   pair.left = io::read_frame(files.left);
   if (!files.right.empty()) {
@@ -63,7 +63,7 @@ StereoPair read_pair(const PairFiles& files) {
   }
   if (!files.disparity.empty()) read_disparity_map(files.disparity, pair);
   pair.white_level = white_level_of(pair);
-  if (!files.calibration.empty()) apply_calibration(pair, files.calibration);
+  if (!files.calibration.empty()) apply_calibration(pair, files.calibration, threads);
   return pair;
 }
 

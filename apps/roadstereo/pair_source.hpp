@@ -28,8 +28,8 @@ struct StereoPair {
   double white_level = 0;          ///< sample value of white; 0: maximum of the sample type
 };
 
-/// Reads the images, the disparity map and the calibration, and rectifies the pair if necessary. Throws Error naming
-/// the file.
-StereoPair read_pair(const PairFiles& files);
+/// Reads the images, the disparity map and the calibration, and rectifies the pair if necessary, by `threads`
+/// workers; 0 takes all cores. Throws Error naming the file.
+StereoPair read_pair(const PairFiles& files, int threads = 0);
 
 }  // namespace roadstereo::cli

@@ -78,8 +78,9 @@ std::optional<RollEstimate> known_geometry(const FrameResult& result) {
 
 std::vector<std::uint8_t> sheet_of(const Inspection& inspection) {
   const FrameResult& result = inspection.result;
-  return io::encode_png(io::result_sheet(inspection.pair.left.view(), result.disparity, result.transformed,
-                                         result.delta_t, known_geometry(result), title_of(inspection))
+  return io::encode_png(io::result_sheet(inspection.pair.left.view(), inspection.options.white_level, result.disparity,
+                                         result.transformed, result.delta_t, known_geometry(result),
+                                         title_of(inspection))
                             .view());
 }
 
@@ -92,13 +93,15 @@ void add_damages(Inspection& inspection, io::OutputFolder& folder) {
 void add_overlay(Inspection& inspection, io::OutputFolder& folder) {
   io::DamageReportInput input{inspection.damage};
   input.left = inspection.pair.left.view();
+  input.white_level = inspection.options.white_level;
   const Frame background = io::damage_background(input);
-  folder.add("overlay.png", io::encode_png(io::damage_overlay(background.view(), inspection.damage).view()));
+  folder.add("overlay.png", io::encode_png(io::damage_overlay(background.view(), 0, inspection.damage).view()));
 }
 
 void add_report(Inspection& inspection, io::OutputFolder& folder) {
   io::DamageReportInput report{inspection.damage};
   report.left = inspection.pair.left.view();
+  report.white_level = inspection.options.white_level;
   report.disparity = inspection.result.disparity;
   report.transformed = inspection.result.transformed;
   report.calibration = inspection.pair.calibration;

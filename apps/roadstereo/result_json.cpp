@@ -28,7 +28,7 @@ Json inputs_json(const PairFiles& files, const std::string& mask, const std::str
 
 /// Converts the text of an option to a number, boolean or string.
 Json option_value(const OptionText& option) {
-  if (option.is_text) return option.value;
+  if (option.kind == OptionKind::word) return option.value;
   Json value = Json::parse(option.value, nullptr, false);
   return value.is_discarded() ? Json(option.value) : value;
 }

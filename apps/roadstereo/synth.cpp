@@ -70,9 +70,13 @@ class Frames {
   std::optional<synth::FlightPath> path_;
 };
 
-/// The frames of an earlier, longer sequence would belong to none. Frames without a truth are of a recording: they
-/// stay.
-void remove_later_frames(int frames, io::OutputFolder& folder) {
+/// The frames of an earlier, longer sequence, or the pair before a sequence, would belong to none. Frames without a
+/// truth are of a recording: they stay.
+void remove_other_frames(int frames, io::OutputFolder& folder) {
+  const std::vector<std::string> pair = synthetic_pair_files({});
+  if (frames > 1 && std::filesystem::exists(folder.path() / pair.back())) {
+    for (const std::string& name : pair) folder.remove(name);
+  }
   const int first = frames > 1 ? frames : 0;
   for (int frame = first; frame < max_frames; ++frame) {
     const std::vector<std::string> names = synthetic_pair_files({frame, max_frames});
@@ -109,7 +113,7 @@ void make_frames(const SynthArguments& arguments) {
   }
   if (arguments.frames > 1) folder.add("trajectory_kitti.txt", true_trajectory(poses));
   progress.end();
-  remove_later_frames(arguments.frames, folder);
+  remove_other_frames(arguments.frames, folder);
   folder.commit();
   if (!arguments.quiet) fmt::print("{}", made_text(arguments, first, folder));
 }

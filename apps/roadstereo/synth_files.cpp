@@ -1,9 +1,10 @@
 #include "synth_files.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "roadstereo/io/image_file.hpp"
 #include "roadstereo/io/label_image.hpp"
+#include "roadstereo/rigid_transform.hpp"
 #include "truth_json.hpp"
 
 namespace roadstereo::cli {
@@ -56,19 +57,13 @@ void add_synthetic_pair(const synth::Scene& scene, const synth::SyntheticPair& p
 }
 
 std::string true_trajectory(const std::vector<std::array<double, 12>>& camera_to_road) {
+  const RigidTransform& first = camera_to_road.front();
+  RigidTransform turn = inverse(first);
+  for (const std::size_t k : {3, 7, 11}) turn[k] = 0;
   std::string text;
-  for (const std::array<double, 12>& pose : camera_to_road) {
-    const std::array<double, 12>& first = camera_to_road.front();
-    for (std::size_t row = 0; row < 3; ++row) {
-      for (std::size_t column = 0; column < 4; ++column) {
-        double value = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-          const double origin = column == 3 ? first[4 * k + 3] : 0;
-          value += first[4 * k + row] * (pose[4 * k + column] - origin);
-        }
-        text += fmt::format("{:.12g}{}", value, row == 2 && column == 3 ? '\n' : ' ');
-      }
-    }
+  for (RigidTransform pose : camera_to_road) {
+    for (const std::size_t k : {3, 7, 11}) pose[k] -= first[k];  // before it is turned: what is 0 stays so
+    text += fmt::format("{:.12g}\n", fmt::join(compose(turn, pose), " "));
   }
   return text;
 }

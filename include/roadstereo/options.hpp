@@ -8,12 +8,15 @@
 #pragma GCC visibility push(default)
 namespace roadstereo {
 
+/// What the value of an option is.
+enum class OptionKind { boolean, whole, real, word };
+
 /// One option of the pipeline by its name, as `--set key=value` and result.json spell it.
 struct OptionText {
   std::string key;          ///< e.g. "matcher.sigma_space"
   std::string value;        ///< as text
   std::string description;  ///< what it does, unit
-  bool is_text = false;     ///< the value is a word, not a number or true/false
+  OptionKind kind = OptionKind::word;
 };
 
 /// Every option with its present value.

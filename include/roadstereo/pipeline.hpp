@@ -141,8 +141,8 @@ class Pipeline {
   void process(const FrameView& left, const FrameView& right, FrameResult& result);
 
   /// Finds and measures damage in the last frame. Without a road, the result is empty. Throws Error when there is no
-  /// last frame (none yet, rejected, swapped out, reset, or `restore` called since), or when hardly any of its
-  /// disparities lies on a road.
+  /// last frame (none yet, rejected, swapped out, reset, or `restore` called since, `set_device_options`, or `set_mask`
+  /// where it changes the engine), or when hardly any of its disparities lies on a road.
   DamageMap find_damage() const;
   /// The same into an earlier result, whose maps keep their memory when the sizes are equal.
   void find_damage(DamageMap& result) const;

@@ -12,6 +12,10 @@ using RigidTransform = std::array<double, 12>;
 RigidTransform compose(const RigidTransform& second, const RigidTransform& first);
 /// Returns the inverse.
 RigidTransform inverse(const RigidTransform& transform);
+/// Returns the largest difference of RᵀR from the identity, where R are the first three columns: 0 of a rotation.
+double rotation_error(const RigidTransform& transform);
+/// Returns the determinant of the first three columns: 1 of a rotation, −1 of a reflection, NaN if one of them is NaN.
+double determinant(const RigidTransform& transform);
 /// Returns a point, transformed.
 std::array<double, 3> transform_point(const RigidTransform& transform, const std::array<double, 3>& point);
 /// Returns a direction, rotated.

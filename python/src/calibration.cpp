@@ -118,6 +118,18 @@ void bind_rectifier(py::module_& module) {
            "Raises Error if a frame has another size than the rectifier.");
 }
 
+/// Throws Error if the file is for images of another size.
+void require_size(const io::CalibrationFile& file, const std::string& source, int width, int height) {
+  const auto check = [&](const auto& calibration) {
+    if (!calibration || calibration->width == 0) return;
+    if (calibration->width == width && calibration->height == height) return;
+    fail(source, ": the calibration is for ", calibration->width, "×", calibration->height, " pixels; size is ", width,
+         "×", height);
+  };
+  check(file.rectified);
+  check(file.rig);
+}
+
 }  // namespace
 
 std::optional<StereoCalibration> optional_calibration(const py::object& calibration) {
@@ -150,7 +162,10 @@ void bind_calibration(py::module_& module) {
       [](const std::filesystem::path& path, const std::optional<std::filesystem::path>& right_path,
          const std::optional<std::array<int, 2>>& size) {
         io::CalibrationFile file = io::read_calibration(path.string(), right_path ? right_path->string() : "");
-        if (size) file.select_size((*size)[0], (*size)[1], path.string());
+        if (size) {
+          file.select_size((*size)[0], (*size)[1], path.string());
+          require_size(file, path.string(), (*size)[0], (*size)[1]);
+        }
         return calibration_object(file, path.string());
       },
       py::arg("path"), py::arg("right_path") = py::none(), py::arg("size") = py::none(),
@@ -159,7 +174,7 @@ void bind_calibration(py::module_& module) {
       "sensor.yaml (two files, left and right), Kalibr, ZED, RealSense, DepthAI, COLMAP, KITTI, Middlebury or K.txt.\n"
       "Files of ZED and RealSense cameras have a rig for each size of the images, (width, height) in pixels: give "
       "`size`.\n"
-      "Raises Error naming the file and the bad value.");
+      "Raises Error naming the file and the bad value, or the size that the file is for if `size` is another.");
 }
 
 }  // namespace roadstereo::python

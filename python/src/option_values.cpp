@@ -32,11 +32,17 @@ void set_each(PipelineOptions& options, const py::dict& values) {
 }
 
 py::object parsed(const OptionText& option) {
-  if (option.is_text) return py::str(option.value);
-  if (option.value == "true" || option.value == "false") return py::bool_(option.value == "true");
-  const bool whole = option.value.find_first_not_of("-0123456789") == std::string::npos;
-  if (whole) return py::int_(py::str(option.value));
-  return py::float_(py::str(option.value));
+  switch (option.kind) {
+    case OptionKind::boolean:
+      return py::bool_(option.value == "true");
+    case OptionKind::whole:
+      return py::int_(py::str(option.value));
+    case OptionKind::real:
+      return py::float_(py::str(option.value));
+    case OptionKind::word:
+      break;
+  }
+  return py::str(option.value);
 }
 
 }  // namespace

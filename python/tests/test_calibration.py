@@ -85,6 +85,12 @@ class Unrectified(unittest.TestCase):
         with self.assertRaisesRegex(roadstereo.Error, "640×480"):
             roadstereo.read_calibration(seed, size=(640, 480))
 
+    def test_size_of_one(self):
+        path = road() / "calibration.yaml"
+        self.assertEqual(roadstereo.read_calibration(path, size=(320, 180)).width, 320)
+        with self.assertRaisesRegex(roadstereo.Error, "is for 320×180 pixels; size is 640×360"):
+            roadstereo.read_calibration(path, size=(640, 360))
+
     def test_ideal_rig_is_rectified_already(self):
         left, right = pair()
         rectifier = roadstereo.Rectifier(ideal_rig(), 320, 180)

@@ -33,6 +33,13 @@ class Options(unittest.TestCase):
         self.assertEqual(pipeline.engine_name, "reference")
         self.assertIs(pipeline.options["check_rows"], False)
 
+    def test_type_is_that_of_option(self):
+        options = roadstereo.Pipeline(white_level=4095, **{"matcher.prior_weight": 0.5}).options
+        for key in ("white_level", "matcher.prior_weight", "damage.max_depth_m"):
+            self.assertIs(type(options[key]), float, key)
+        self.assertIs(type(options["threads"]), int)
+        self.assertIs(type(roadstereo.Pipeline(white_level=0).options["white_level"]), float)
+
     def test_numpy_scalars(self):
         given = {"threads": np.int64(2), "check_rows": np.bool_(False), "matcher.sigma_space": np.float64(0.1 + 0.2)}
         options = roadstereo.Pipeline(options={**given, "matcher.sigma_colour": np.float32(2.5)}).options

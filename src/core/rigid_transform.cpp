@@ -1,5 +1,7 @@
 #include "roadstereo/rigid_transform.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace roadstereo {
@@ -25,6 +27,21 @@ RigidTransform inverse(const RigidTransform& transform) {
     }
   }
   return result;
+}
+
+double rotation_error(const RigidTransform& t) {
+  double error = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double product = t[i] * t[j] + t[4 + i] * t[4 + j] + t[8 + i] * t[8 + j];
+      error = std::max(error, std::abs(product - (i == j ? 1 : 0)));
+    }
+  }
+  return error;
+}
+
+double determinant(const RigidTransform& t) {
+  return t[0] * (t[5] * t[10] - t[6] * t[9]) - t[1] * (t[4] * t[10] - t[6] * t[8]) + t[2] * (t[4] * t[9] - t[5] * t[8]);
 }
 
 std::array<double, 3> rotate(const RigidTransform& t, const std::array<double, 3>& d) {

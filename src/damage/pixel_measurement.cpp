@@ -10,7 +10,7 @@
 #include "damage/damage_maps.hpp"
 #include "damage/pixel_runs.hpp"
 #include "damage/surface_correlation.hpp"
-#include "road/refinement/smoothing_error.hpp"
+#include "road/refinement/smoothing_bias.hpp"
 #include "roadstereo/resolution_limits.hpp"
 
 namespace roadstereo {
@@ -20,8 +20,8 @@ namespace {
 double smoothing_error(ImageView<const float> map, int reach, int u, int v) {
   const bool inside = u >= reach && v >= reach && u + reach < map.width() && v + reach < map.height();
   if (reach == 0 || !inside) return 0;
-  return with_smoothing_error(0, map(u, v), map(u - reach, v) + map(u + reach, v),
-                              map(u, v - reach) + map(u, v + reach));
+  return with_smoothing_bias(0, map(u, v), map(u - reach, v) + map(u + reach, v),
+                             map(u, v - reach) + map(u, v + reach));
 }
 
 /// Variance of the disparity at (u, v) by noise alone, without the error of smoothing; NaN without a measurement, 0 or

@@ -15,6 +15,7 @@
 #include "evaluation/peer_maps.hpp"
 #include "evaluation/peer_scripts.hpp"
 #include "roadstereo/error.hpp"
+#include "roadstereo/rigid_transform.hpp"
 
 namespace roadstereo::io {
 namespace fs = std::filesystem;
@@ -42,20 +43,12 @@ void require_program(const std::string& test, const char* reason) {
   if (std::system(("( " + test + " ) >/dev/null 2>&1").c_str()) != 0) fail(reason);
 }
 
-/// Inverse of the motion of a unit quaternion (w, x, y, z) and a translation.
-std::array<double, 12> inverse_pose(const std::array<double, 4>& q, const std::array<double, 3>& t) {
+/// Motion of a unit quaternion (w, x, y, z) and a translation.
+RigidTransform motion_of(const std::array<double, 4>& q, const std::array<double, 3>& t) {
   const auto [w, x, y, z] = q;
-  const std::array<std::array<double, 3>, 3> r{{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
-                                                {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
-                                                {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
-  std::array<double, 12> pose{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      pose[4 * i + j] = r[j][i];
-      pose[4 * i + 3] -= r[j][i] * t[j];
-    }
-  }
-  return pose;
+  return {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),     t[0],
+          2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),     t[1],
+          2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y), t[2]};
 }
 
 /// images.txt of COLMAP: of each image a line with its pose, world to camera, and a line with its points.
@@ -78,7 +71,7 @@ PeerPoses read_images(const fs::path& file, int frames) {
     words >> camera >> name;
     const int frame = std::atoi(name.c_str());
     if (!words || frame < 0 || frame >= frames) fail(file.string(), ": this is no line of an image: ", line);
-    poses.camera_to_world[static_cast<std::size_t>(frame)] = inverse_pose(q, t);
+    poses.camera_to_world[static_cast<std::size_t>(frame)] = inverse(motion_of(q, t));
     std::getline(stream, line);
   }
   return poses;
@@ -100,22 +93,6 @@ fs::path largest_model(const fs::path& sparse) {
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-/// Appends the motion from camera to camera.
-std::array<double, 12> moved(const std::array<double, 12>& pose, const std::array<double, 12>& motion) {
-  // The inverse of a motion (R, t) is (Rᵀ, −Rᵀt).
-  std::array<double, 12> result{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    result[4 * i + 3] = pose[4 * i + 3];
-    for (std::size_t j = 0; j < 3; ++j) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        result[4 * i + j] += pose[4 * i + k] * motion[4 * j + k];
-        result[4 * i + 3] -= pose[4 * i + k] * motion[4 * j + k] * motion[4 * j + 3];
-      }
-    }
-  }
-  return result;
 }
 
 }  // namespace
@@ -186,7 +163,7 @@ PeerPoses run_open3d(const PeerFrames& frames) {
           << frames.frames() << " " << c.focal_px << " " << c.cx_px << " " << c.cy_px << " " << frames.max_depth_m();
   run_command(command.str(), "open3d", log);
   PeerPoses poses;
-  std::array<double, 12> pose{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  RigidTransform pose{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   poses.camera_to_world.emplace_back(pose);
   std::ifstream stream(log);
   std::string line;
@@ -201,10 +178,10 @@ PeerPoses run_open3d(const PeerFrames& frames) {
       poses.camera_to_world.emplace_back();
       continue;
     }
-    std::array<double, 12> motion{};
+    RigidTransform motion{};
     std::transform(text.begin(), text.end(), motion.begin(),
                    [](const std::string& word) { return std::atof(word.c_str()); });
-    pose = moved(pose, motion);
+    pose = compose(pose, inverse(motion));
     poses.camera_to_world.emplace_back(pose);
   }
   if (static_cast<int>(poses.camera_to_world.size()) != frames.frames()) {

@@ -54,28 +54,30 @@ std::vector<T> get(std::ifstream& stream, std::size_t count) {
 }
 
 template <class T>
-std::vector<T> quantised(const Image<float>& map, float steps) {
+std::vector<T> quantised(const Image<float>& map, float steps, float offset = 0) {
   constexpr auto most = static_cast<float>(std::numeric_limits<T>::max());
   std::vector<T> values(map.pixels());
-  std::transform(map.row(0), map.row(0) + map.pixels(), values.begin(), [steps](float value) {
-    const float scaled = std::max(std::round(steps * value), 1.0F);      // the surest are not lost
-    return value > 0 && scaled <= most ? static_cast<T>(scaled) : T{0};  // NaN compares false
+  std::transform(map.row(0), map.row(0) + map.pixels(), values.begin(), [=](float value) {
+    const float raised = value + offset;
+    const float scaled = std::max(std::round(steps * raised), 1.0F);      // the surest are not lost
+    return raised > 0 && scaled <= most ? static_cast<T>(scaled) : T{0};  // NaN compares false
   });
   return values;
 }
 
 template <class T>
-Image<float> restored(const std::vector<T>& values, int width, int height, float steps) {
+Image<float> restored(const std::vector<T>& values, int width, int height, float steps, float offset = 0) {
   Image<float> map(width, height);
-  std::transform(values.begin(), values.end(), map.row(0), [steps](T value) {
-    return value == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value) / steps;
+  std::transform(values.begin(), values.end(), map.row(0), [=](T value) {
+    return value == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value) / steps - offset;
   });
   return map;
 }
 
 }  // namespace
 
-KeyframeStore::KeyframeStore(std::filesystem::path folder) : folder_(std::move(folder)) {
+KeyframeStore::KeyframeStore(std::filesystem::path folder, double disparity_offset_px)
+    : folder_(std::move(folder)), disparity_offset_px_(disparity_offset_px) {
   try {
     std::filesystem::create_directories(folder_);
     for (const std::filesystem::path& earlier : own_files(folder_, "loop search", "keyframes", is_keyframe)) {
@@ -117,7 +119,7 @@ void KeyframeStore::write(int frame, const OdometryFrame& maps) {
   std::ofstream stream(file(frame), std::ios::binary);
   put(stream, std::vector<double>{kept.road.a0, kept.road.a1, kept.road.a2});
   put(stream, std::vector<std::int16_t>(kept.grey.row(0), kept.grey.row(0) + kept.grey.pixels()));
-  put(stream, quantised<std::uint16_t>(kept.disparity, disparity_steps));
+  put(stream, quantised<std::uint16_t>(kept.disparity, disparity_steps, offset_px()));
   put(stream, quantised<std::uint8_t>(kept.sigma, sigma_steps));
   stream.close();
   if (!stream) fail<SystemError>(file(frame).string(), ": cannot be written: ", std::generic_category().message(errno));
@@ -134,7 +136,7 @@ KeyframeMaps KeyframeStore::read(int frame) const {
   const std::vector<std::int16_t> grey = get<std::int16_t>(stream, pixels);
   maps.grey.resize(width_, height_);
   std::copy(grey.begin(), grey.end(), maps.grey.row(0));
-  maps.disparity = restored(get<std::uint16_t>(stream, pixels), width_, height_, disparity_steps);
+  maps.disparity = restored(get<std::uint16_t>(stream, pixels), width_, height_, disparity_steps, offset_px());
   maps.sigma = restored(get<std::uint8_t>(stream, pixels), width_, height_, sigma_steps);
   if (!stream) fail<SystemError>(file(frame).string(), ": cannot be read: ", std::generic_category().message(errno));
   return maps;

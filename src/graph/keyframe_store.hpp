@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <vector>
 
@@ -19,10 +20,11 @@ struct KeyframeMaps {
 };
 
 /// Frames in files of a folder of its own, halved until they have at most 640 × 480 pixels: five bytes a pixel, grey
-/// levels, disparities in 1/64 px and their standard errors in 1/128 px.
+/// levels, disparities with their offset in 1/64 px and standard errors in 1/128 px.
 class KeyframeStore {
  public:
-  explicit KeyframeStore(std::filesystem::path folder);
+  /// `disparity_offset_px`: of the calibration.
+  KeyframeStore(std::filesystem::path folder, double disparity_offset_px);
   ~KeyframeStore();
   KeyframeStore(const KeyframeStore&) = delete;
   KeyframeStore& operator=(const KeyframeStore&) = delete;
@@ -37,7 +39,11 @@ class KeyframeStore {
  private:
   std::filesystem::path file(int frame) const { return folder_ / std::to_string(frame); }
 
+  /// Added to disparities: what is not positive then has no depth.
+  float offset_px() const { return static_cast<float>(std::ldexp(disparity_offset_px_, -halvings_)); }
+
   std::filesystem::path folder_;
+  double disparity_offset_px_;
   int halvings_ = 0;
   int width_ = 0, height_ = 0;  ///< of the maps
 };

@@ -31,8 +31,9 @@ struct Loaded {
   KeyframeMaps maps;
   ImagePyramid pyramid;
   LinkReference reference;
+  double disparity_offset_px = 0;
 
-  FrameMaps view() const { return {pyramid, maps.disparity, maps.sigma}; }
+  LinkMaps view() const { return {pyramid, maps.disparity, maps.sigma, disparity_offset_px}; }
 };
 
 RigidMotion motion_between(const Trajectory& trajectory, int from, int to) {
@@ -51,7 +52,7 @@ double yaw_of(const RigidMotion& motion, const FrameRoad& from, const FrameRoad&
 
 struct LoopSearch::State {
   State(const StereoCalibration& rig, std::filesystem::path folder, const OdometryOptions& wanted)
-      : full(rig), store(std::move(folder)), options(strict(wanted)) {}
+      : full(rig), store(std::move(folder), rig.disparity_offset_px), options(strict(wanted)) {}
 
   void add(int frame, const OdometryFrame& maps, double offset_px);
   std::vector<LoopLink> find(const Trajectory& odometry, const Trajectory& best);
@@ -106,6 +107,7 @@ const Loaded& LoopSearch::State::load(const LinkEstimator& estimator, std::size_
   loaded.index = index;
   loaded.maps = store.read(views[index].frame);
   loaded.pyramid.build(loaded.maps.grey);
+  loaded.disparity_offset_px = estimator.calibration().disparity_offset_px;
   estimator.select(loaded.view(), loaded.maps.view(), loaded.reference);
   return loaded;
 }

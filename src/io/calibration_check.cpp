@@ -4,6 +4,7 @@
 #include "core/image_limits.hpp"
 #include "io/calibration_formats.hpp"
 #include "roadstereo/error.hpp"
+#include "roadstereo/rigid_transform.hpp"
 
 namespace roadstereo::io {
 namespace {
@@ -36,15 +37,8 @@ void check_baseline(double baseline, const std::string& source, const std::strin
 
 bool is_rotation(const std::array<double, 9>& r) {
   constexpr double tolerance = 2e-3;  // files round to few digits
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const double dot = r[3 * i] * r[3 * j] + r[3 * i + 1] * r[3 * j + 1] + r[3 * i + 2] * r[3 * j + 2];
-      if (!(std::abs(dot - (i == j ? 1.0 : 0.0)) < tolerance)) return false;
-    }
-  }
-  const double determinant =
-      r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) + r[2] * (r[3] * r[7] - r[4] * r[6]);
-  return determinant > 0;
+  const RigidTransform t{r[0], r[1], r[2], 0, r[3], r[4], r[5], 0, r[6], r[7], r[8], 0};
+  return determinant(t) > 0 && rotation_error(t) < tolerance;
 }
 
 void check_matrix(const std::array<double, 9>& k, int width, const std::string& source, const std::string& name) {

@@ -31,14 +31,8 @@ enum class Format {
   unknown
 };
 
-CalibrationText read_text(const std::string& path, std::size_t limit = max_bytes) {
-  const std::vector<std::uint8_t> bytes = read_file(path, limit);
-  if (std::find(bytes.begin(), bytes.end(), std::uint8_t{0}) != bytes.end()) {
-    fail(path, ": this is not a text file; a calibration must be one");
-  }
-  std::string text(bytes.begin(), bytes.end());
-  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // byte order mark
-  return {path, std::move(text)};
+CalibrationText read_calibration_text(const std::string& path, std::size_t limit = max_bytes) {
+  return {path, read_text(path, limit, "not a text file; a calibration must be one")};
 }
 
 bool contains(std::string_view text, std::string_view part) {
@@ -97,18 +91,18 @@ CalibrationFile read_as(Format format, const CalibrationText& file, const std::s
       fail(file.path, ": this is the ", is_ros ? "camera_info" : "sensor.yaml",
            " of one camera; the file of the right camera is needed, too");
     }
-    const CalibrationText second = read_text(second_path);
+    const CalibrationText second = read_calibration_text(second_path);
     return is_ros ? read_ros_camera_info(file, second) : read_euroc_sensors(file, second);
   }
   if (format == Format::colmap) {
     if (!has_second) {
       fail(file.path, ": this is COLMAP's cameras.txt; rigs.txt or images.txt with the poses is needed, too");
     }
-    return read_colmap(file, read_text(second_path, max_images_bytes));
+    return read_colmap(file, read_calibration_text(second_path, max_images_bytes));
   }
   if (format == Format::opencv_stereo) {
     if (!has_second) return read_opencv_stereo(file, nullptr);
-    const CalibrationText second = read_text(second_path);
+    const CalibrationText second = read_calibration_text(second_path);
     return read_opencv_stereo(file, &second);
   }
   if (format == Format::unknown) {
@@ -154,7 +148,7 @@ void CalibrationFile::select_size(int width, int height, const std::string& sour
 }
 
 CalibrationFile read_calibration(const std::string& path, const std::string& second_path) {
-  const CalibrationText file = read_text(path);
+  const CalibrationText file = read_calibration_text(path);
   try {
     return read_as(recognise(file.text), file, second_path);
   } catch (const Error&) {

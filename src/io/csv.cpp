@@ -1,10 +1,9 @@
 #include "io/csv.hpp"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
+#include "core/shortest_text.hpp"
 #include "io/fixed_text.hpp"
 
 namespace roadstereo::io {
@@ -33,9 +32,7 @@ CsvLine& CsvLine::add(bool value) {
 
 CsvLine& CsvLine::add(double value) {
   if (!std::isfinite(value)) return add_nothing();
-  std::array<char, 32> digits{};
-  text_.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
-  text_ += ',';
+  text_ += shortest_text(value) + ',';
   return *this;
 }
 

@@ -12,7 +12,7 @@ void add_damage_files(OutputFolder& folder, const DamageReportInput& input) {
   folder.add("damages.json", damages_json(input.map));
   folder.add("damages.csv", damages_csv(input.map));
   folder.add("damage.png", encode_label_png(input.map.ids));
-  folder.add("overlay.png", encode_png(damage_overlay(background.view(), input.map).view()));
+  folder.add("overlay.png", encode_png(damage_overlay(background.view(), 0, input.map).view()));
   folder.add("report.html", damage_report(input));
 }
 

@@ -10,7 +10,6 @@
 #include "io/drawing.hpp"
 #include "io/frame_mat.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/io/image_file.hpp"
 
 namespace roadstereo::io {
 namespace {
@@ -84,12 +83,12 @@ class LabelPlacer {
 
 }  // namespace
 
-Frame damage_overlay(const FrameView& picture, const DamageMap& map) {
+Frame damage_overlay(const FrameView& picture, double white_level, const DamageMap& map) {
   if (picture.width != map.ids.width() || picture.height != map.ids.height()) {
     fail("the image has ", picture.width, "×", picture.height, " pixels, but the damage map has ", map.ids.width(), "×",
          map.ids.height());
   }
-  cv::Mat canvas = to_bgr(picture, find_white_level(picture, picture));
+  cv::Mat canvas = to_bgr(picture, white_level);
   const int letters = text_height_for(std::min(canvas.rows, canvas.cols));
   const int line = std::max(1, cvRound(letters / 7.0));
   for (const Damage& damage : map.damages) draw_outline(canvas, map, damage, line);

@@ -1,10 +1,10 @@
 #include "roadstereo/io/damage_table.hpp"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "io/csv.hpp"
 #include "io/damage_columns.hpp"
+#include "io/json_number.hpp"
 #include "roadstereo/version.hpp"
 
 namespace roadstereo::io {
@@ -26,17 +26,13 @@ Json damage_json(const Damage& damage) {
   return row;
 }
 
-Json finite(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 }  // namespace
 
 std::string damages_json(const DamageMap& map) {
   Json document = {{"version", version}, {"metric", map.metric}};
   document["non_metric_reason"] = map.metric ? Json(nullptr) : Json(map.non_metric_reason);
   document["size"] = {{"width", map.ids.width()}, {"height", map.ids.height()}};
-  document["noise_px"] = finite(map.noise_px);
+  document["noise_px"] = json_number(map.noise_px);
   document["damages"] = Json::array();
   for (const Damage& damage : map.damages) document["damages"].push_back(damage_json(damage));
   document["candidates"] = Json::array();

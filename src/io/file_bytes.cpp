@@ -1,5 +1,6 @@
 #include "io/file_bytes.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -39,6 +40,14 @@ std::vector<std::uint8_t> read_file(const std::string& path, std::size_t max_byt
   bytes.resize(static_cast<std::size_t>(file.gcount()));
   if (bytes.empty()) fail(path, ": the file is empty");
   return bytes;
+}
+
+std::string read_text(const std::string& path, std::size_t max_bytes, const char* is_not) {
+  const std::vector<std::uint8_t> bytes = read_file(path, max_bytes);
+  if (std::find(bytes.begin(), bytes.end(), std::uint8_t{0}) != bytes.end()) fail(path, ": this is ", is_not);
+  std::string text(bytes.begin(), bytes.end());
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // byte order mark
+  return text;
 }
 
 }  // namespace roadstereo::io

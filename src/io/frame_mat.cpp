@@ -32,8 +32,10 @@ Frame frame_from(const cv::Mat& mat, ChannelOrder order) {
 }
 
 cv::Mat to_bgr(const FrameView& frame, double white_level) {
+  constexpr double largest = 65535;
+  const double white = white_level > 0 ? white_level : largest;
   cv::Mat narrow;
-  mat_over(frame).convertTo(narrow, CV_8U, frame.sample == SampleType::u16 ? 255.0 / white_level : 1.0);
+  mat_over(frame).convertTo(narrow, CV_8U, frame.sample == SampleType::u16 ? 255 / white : 1.0);
   cv::Mat bgr;
   switch (frame.order) {
     case ChannelOrder::grey:

@@ -78,10 +78,19 @@ void remove_stale(const fs::path& folder) {
   }
 }
 
-/// Moves files with rollback.
+/// Moves files; the destructor takes that back unless they are to be kept.
 class Moves {
  public:
   explicit Moves(fs::path replaced) : replaced_(std::move(replaced)) {}
+  Moves(const Moves&) = delete;
+  Moves& operator=(const Moves&) = delete;
+  ~Moves() {
+    std::error_code ignored;
+    for (; !moves_.empty(); moves_.pop_back()) {
+      const Move& done = moves_.back();
+      fs::rename(done.aside.empty() ? done.to : done.aside, done.aside.empty() ? done.from : done.to, ignored);
+    }
+  }
 
   /// Moves `from` to `to`; an existing file is backed up. At every moment `to` is the old file or the new one.
   void move(const fs::path& from, const fs::path& to) {
@@ -98,13 +107,7 @@ class Moves {
     fs::rename(from, to);
   }
 
-  void take_back() noexcept {
-    std::error_code ignored;
-    for (; !moves_.empty(); moves_.pop_back()) {
-      const Move& done = moves_.back();
-      fs::rename(done.aside.empty() ? done.to : done.aside, done.aside.empty() ? done.from : done.to, ignored);
-    }
-  }
+  void keep() { moves_.clear(); }
 
  private:
   struct Move {
@@ -229,12 +232,9 @@ void OutputFolder::commit() {
       moves.move(staging_ / "new" / name, target);
     }
   } catch (const fs::filesystem_error& error) {
-    moves.take_back();
     fail_write(target, error.code().value());
-  } catch (...) {
-    moves.take_back();
-    throw;
   }
+  moves.keep();
   std::error_code ignored;
   for (const std::string& name : removed_) fs::remove(folder_ / name, ignored);
   unstage();

@@ -22,8 +22,9 @@ int scale_bar_width(const ColourScale& scale, int height, int text_height);
 /// Draws the scale bar into `area` of the canvas.
 void draw_scale_bar(cv::Mat& canvas, cv::Rect area, const ColourScale& scale, int text_height);
 
-/// Draws the v-disparity histogram with its axes. The histogram fills `plot`; tick numbers and axis labels are at its
-/// left and below.
+/// Draws the v-disparity histogram (row against disparity, brighter = more pixels) with its axes and the fitted line
+/// α0 + α1·y(ψ): the disparity of the road at the middle column of each row; dashed at the first and last column if
+/// there is roll. The histogram fills `plot`; tick numbers and axis labels are at its left and below.
 void draw_v_disparity(cv::Mat& canvas, cv::Rect plot, ImageView<const float> disparity,
                       const std::optional<RollEstimate>& geometry, int text_height);
 

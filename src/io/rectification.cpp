@@ -125,12 +125,11 @@ std::pair<PixelMap, PixelMap> inner_maps(const StereoRig& rig, cv::Size size, Re
   fail("the rig cannot be rectified: the optical axes diverge too much, or a distortion is out of range");
 }
 
-Frame resample(const Frame& frame, const PixelMap& map) {
-  constexpr int all_cores = 0;
+Frame resample(const Frame& frame, const PixelMap& map, int threads) {
   const auto view = [](const cv::Mat& places) {
     return ImageView<const float>(places.ptr<float>(), places.cols, places.rows);
   };
-  return roadstereo::resample(frame.view(), view(map.x), view(map.y), all_cores);
+  return roadstereo::resample(frame.view(), view(map.x), view(map.y), threads);
 }
 
 StereoCalibration calibration_of(const RectifiedCameras& cameras, cv::Size size) {
@@ -153,9 +152,10 @@ struct Rectifier::Maps {
   PixelMap left;
   PixelMap right;
   StereoCalibration calibration;
+  int threads = 0;
 };
 
-Rectifier::Rectifier(const StereoRig& rig, int width, int height) : maps_(std::make_unique<Maps>()) {
+Rectifier::Rectifier(const StereoRig& rig, int width, int height, int threads) : maps_(std::make_unique<Maps>()) {
   check_size(rig, width, height);
   if (std::min(width, height) < 2)
     fail("the images have ", size_text(width, height), " pixels; rectification needs 2×2");
@@ -165,6 +165,7 @@ Rectifier::Rectifier(const StereoRig& rig, int width, int height) : maps_(std::m
   check_rig(sized, "the rig");
   check_arrangement(sized);
   maps_->size = cv::Size(width, height);
+  maps_->threads = threads;
   try {
     RectifiedCameras cameras = rectified_cameras(sized, maps_->size);
     std::tie(maps_->left, maps_->right) = inner_maps(sized, maps_->size, cameras);
@@ -188,15 +189,16 @@ RectifiedPair Rectifier::rectify(const Frame& left, const Frame& right) const {
     fail("the image has ", size_text(frame->width, frame->height), " pixels, but the rig ",
          size_text(maps_->size.width, maps_->size.height));
   }
-  return {resample(left, maps_->left), resample(right, maps_->right), maps_->calibration};
+  const int threads = maps_->threads;
+  return {resample(left, maps_->left, threads), resample(right, maps_->right, threads), maps_->calibration};
 }
 
-RectifiedPair rectify(const Frame& left, const Frame& right, const StereoRig& rig) {
+RectifiedPair rectify(const Frame& left, const Frame& right, const StereoRig& rig, int threads) {
   if (left.width != right.width || left.height != right.height) {
     fail("the left image has ", size_text(left.width, left.height), " pixels, the right one ",
          size_text(right.width, right.height), "; both must have the same");
   }
-  return Rectifier(rig, left.width, left.height).rectify(left, right);
+  return Rectifier(rig, left.width, left.height, threads).rectify(left, right);
 }
 
 }  // namespace roadstereo::io

@@ -4,7 +4,6 @@
 #include "io/drawing.hpp"
 #include "io/frame_mat.hpp"
 #include "io/panels.hpp"
-#include "roadstereo/io/image_file.hpp"
 
 namespace roadstereo::io {
 namespace {
@@ -58,8 +57,9 @@ void draw_map(cv::Mat& canvas, cv::Rect panel, const SheetLayout& layout, ImageV
 
 }  // namespace
 
-Frame result_sheet(const FrameView& left, ImageView<const float> disparity, ImageView<const float> transformed,
-                   double delta_t, const std::optional<RollEstimate>& geometry, const std::string& title) {
+Frame result_sheet(const FrameView& left, double white_level, ImageView<const float> disparity,
+                   ImageView<const float> transformed, double delta_t, const std::optional<RollEstimate>& geometry,
+                   const std::string& title) {
   const ColourScale disparity_scale = percentile_scale(disparity, "disparity, px");
   const ColourScale damage_scale = transformed_scale(transformed, delta_t);
   const cv::Size axis = v_disparity_margin(disparity.height(), text_height);
@@ -77,7 +77,7 @@ Frame result_sheet(const FrameView& left, ImageView<const float> disparity, Imag
 
   const cv::Rect image_panel = layout.area(0, 0);
   draw_heading(canvas, image_panel, "left image");
-  draw_picture(canvas, image_panel, to_bgr(left, find_white_level(left, left)), layout.picture);
+  draw_picture(canvas, image_panel, to_bgr(left, white_level), layout.picture);
 
   const cv::Rect disparity_panel = layout.area(1, 0);
   draw_heading(canvas, disparity_panel, "disparity (black: invalid)");

@@ -11,29 +11,13 @@
 #include <string_view>
 #include <vector>
 
+#include "core/shortest_text.hpp"
 #include "io/quaternion.hpp"
 #include "roadstereo/error.hpp"
+#include "roadstereo/rigid_transform.hpp"
 
 namespace roadstereo::io {
 namespace {
-
-/// Largest difference of RᵀR from the identity.
-double rotation_error(const std::array<double, 12>& pose) {
-  double error = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      double product = 0;
-      for (std::size_t k = 0; k < 3; ++k) product += pose[4 * k + i] * pose[4 * k + j];
-      error = std::max(error, std::abs(product - (i == j ? 1 : 0)));
-    }
-  }
-  return error;
-}
-
-/// Determinant of the first three columns: 1 of a rotation, −1 of a reflection.
-double determinant(const std::array<double, 12>& m) {
-  return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
-}
 
 /// Parses a word as a number, whatever the locale; nullopt if it is none.
 std::optional<double> number_of(std::string_view word) {
@@ -51,13 +35,6 @@ bool has_times(const Trajectory& trajectory, int piece, const std::vector<double
     if (i >= times_s.size() || !std::isfinite(times_s[i])) return false;
   }
   return true;
-}
-
-/// With as many digits as read back the same number.
-std::string number_text(double value) {
-  std::array<char, 32> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), end};
 }
 
 }  // namespace
@@ -105,7 +82,7 @@ std::string kitti_trajectory(const Trajectory& trajectory, int piece) {
   std::string text;
   int line = 0;
   const auto add = [&](const std::array<double, 12>& values) {
-    for (std::size_t i = 0; i < values.size(); ++i) text += (i > 0 ? " " : "") + number_text(values[i]);
+    for (std::size_t i = 0; i < values.size(); ++i) text += (i > 0 ? " " : "") + shortest_text(values[i]);
     text += '\n';
     ++line;
   };
@@ -125,9 +102,9 @@ std::string tum_trajectory(const Trajectory& trajectory, int piece, const std::v
     const FramePose& pose = trajectory.frames[i];
     if (pose.piece != piece) continue;
     const std::array<double, 12>& m = pose.camera_to_world;
-    text += number_text(timed ? times_s[i] : pose.frame);
-    for (const double value : {m[3], m[7], m[11]}) text += ' ' + number_text(value);
-    for (const double value : quaternion(m)) text += ' ' + number_text(value);
+    text += shortest_text(timed ? times_s[i] : pose.frame);
+    for (const double value : {m[3], m[7], m[11]}) text += ' ' + shortest_text(value);
+    for (const double value : quaternion(m)) text += ' ' + shortest_text(value);
     text += '\n';
   }
   return text;

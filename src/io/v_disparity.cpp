@@ -3,7 +3,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "io/drawing.hpp"
-#include "io/frame_mat.hpp"
 #include "io/panels.hpp"
 
 namespace roadstereo::io {
@@ -168,16 +167,6 @@ void draw_v_disparity(cv::Mat& canvas, cv::Rect plot, ImageView<const float> dis
   }
   picture.copyTo(canvas(plot));
   draw_axes(canvas, plot, range, text_height);
-}
-
-Frame v_disparity_picture(ImageView<const float> disparity, const std::optional<RollEstimate>& geometry) {
-  const int height = std::clamp(disparity.height(), 300, 1200);
-  const int text_height = text_height_for(height);
-  const cv::Size margin = v_disparity_margin(disparity.height(), text_height);
-  const cv::Rect plot(margin.width, text_height, height, height);
-  cv::Mat canvas(plot.br().y + margin.height, plot.br().x + 2 * text_height, CV_8UC3, paper);
-  draw_v_disparity(canvas, plot, disparity, geometry, text_height);
-  return frame_from(canvas, ChannelOrder::bgr);
 }
 
 }  // namespace roadstereo::io

@@ -35,18 +35,10 @@ struct TileRange {
 
 constexpr double min_cell_m = 0.0005, max_cell_m = 10;
 
-/// Rows of a rotation, and a translation that is finite.
+/// A rotation, and a translation that is finite.
 void require_rigid(const RigidTransform& t) {
   constexpr double tolerance = 1e-3;
-  const auto dot = [&](std::size_t a, std::size_t b) {
-    return t[4 * a] * t[4 * b] + t[4 * a + 1] * t[4 * b + 1] + t[4 * a + 2] * t[4 * b + 2];
-  };
-  const double determinant =
-      t[0] * (t[5] * t[10] - t[6] * t[9]) - t[1] * (t[4] * t[10] - t[6] * t[8]) + t[2] * (t[4] * t[9] - t[5] * t[8]);
-  double error = std::abs(determinant - 1);
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t b = 0; b <= a; ++b) error = std::max(error, std::abs(dot(a, b) - (a == b ? 1 : 0)));
-  }
+  const double error = std::max(std::abs(determinant(t) - 1), rotation_error(t));
   if (!(error <= tolerance)) {
     fail("camera_to_map is no rigid motion: its rotation is off by ", error, "; at most ", tolerance, " are allowed");
   }

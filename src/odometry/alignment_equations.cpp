@@ -201,7 +201,7 @@ HWY_INLINE Vector<3> shift_of(const RigidMotion& motion) {
 
 class Linearisation {
  public:
-  Linearisation(const FrameMaps& current, const StereoCalibration& calibration, int level, const AlignmentState& state)
+  Linearisation(const LinkMaps& current, const StereoCalibration& calibration, int level, const AlignmentState& state)
       : current_(current),
         calibration_(calibration),
         state_(state),
@@ -329,7 +329,7 @@ class Linearisation {
     equation.put_variance(hn::MulAdd(surface.sigma, surface.sigma, hn::Mul(error, error)));
   }
 
-  const FrameMaps& current_;
+  const LinkMaps& current_;
   const StereoCalibration& calibration_;
   const AlignmentState& state_;
   ImageView<const std::int16_t> grey_;
@@ -341,7 +341,7 @@ class Linearisation {
 
 /// The blocks first … last − 1. Returns the area of the points that is seen; a point that is as near as it was
 /// counts 1.
-double linearise_blocks(const std::vector<ReferencePoint>& points, const FrameMaps& current,
+double linearise_blocks(const std::vector<ReferencePoint>& points, const LinkMaps& current,
                         const StereoCalibration& calibration, int level, const AlignmentState& state, int first,
                         int last, AlignmentEquations& equations) {
   Linearisation linearisation(current, calibration, level, state);
@@ -392,9 +392,8 @@ namespace roadstereo {
 HWY_EXPORT(linearise_blocks);
 HWY_EXPORT(add_products_of_blocks);
 
-void linearise(const std::vector<ReferencePoint>& points, const FrameMaps& current,
-               const StereoCalibration& calibration, int level, const AlignmentState& state, int threads,
-               AlignmentEquations& equations) {
+void linearise(const std::vector<ReferencePoint>& points, const LinkMaps& current, const StereoCalibration& calibration,
+               int level, const AlignmentState& state, int threads, AlignmentEquations& equations) {
   constexpr int blocks_per_band = 40;
   const int blocks = static_cast<int>(block_count(points.size()));
   equations.grey.resize(static_cast<std::size_t>(blocks));

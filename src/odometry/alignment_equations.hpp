@@ -63,9 +63,8 @@ struct AlignmentState {
 
 /// Linearises the differences of grey levels and of disparities between the points of a level of a reference and a
 /// frame at `state`, on up to `threads` threads (0: all cores). Weights are left open.
-void linearise(const std::vector<ReferencePoint>& points, const FrameMaps& current,
-               const StereoCalibration& calibration, int level, const AlignmentState& state, int threads,
-               AlignmentEquations& equations);
+void linearise(const std::vector<ReferencePoint>& points, const LinkMaps& current, const StereoCalibration& calibration,
+               int level, const AlignmentState& state, int threads, AlignmentEquations& equations);
 
 /// Adds the weighted products of every two elements of the equations' rows, the lower half of a matrix; the residual is
 /// the last element of a row.

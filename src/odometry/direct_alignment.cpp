@@ -63,7 +63,7 @@ struct NormalEquations {
 
 class Aligner {
  public:
-  Aligner(const ReferencePoints& reference, const FrameMaps& current, const StereoCalibration& calibration,
+  Aligner(const ReferencePoints& reference, const LinkMaps& current, const StereoCalibration& calibration,
           const RigidMotion& start, const OffsetPrior& prior, int threads)
       : reference_(reference),
         current_(current),
@@ -276,7 +276,7 @@ class Aligner {
   }
 
   const ReferencePoints& reference_;
-  const FrameMaps& current_;
+  const LinkMaps& current_;
   const StereoCalibration& calibration_;
   OffsetPrior prior_;
   int threads_;
@@ -291,7 +291,7 @@ class Aligner {
 
 }  // namespace
 
-Alignment align(const ReferencePoints& reference, const FrameMaps& current, const StereoCalibration& calibration,
+Alignment align(const ReferencePoints& reference, const LinkMaps& current, const StereoCalibration& calibration,
                 const RigidMotion& start, const OffsetPrior& offset, int coarsest, int finest, int threads) {
   Aligner aligner(reference, current, calibration, start, offset, threads);
   const int levels = std::min(current.pyramid.levels(), static_cast<int>(reference.levels.size()));

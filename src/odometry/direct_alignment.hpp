@@ -42,7 +42,7 @@ inline double offset_shape(const StereoCalibration& calibration, double u, doubl
 /// error of the depth. The covariance is the sandwich of cells of the image, whose residuals may be correlated. `start`
 /// is a first guess; `coarsest` the first level of the pyramid, `finest` the last. It runs on up to
 /// `threads` threads (0: all cores); the result does not depend on how many.
-Alignment align(const ReferencePoints& reference, const FrameMaps& current, const StereoCalibration& calibration,
+Alignment align(const ReferencePoints& reference, const LinkMaps& current, const StereoCalibration& calibration,
                 const RigidMotion& start, const OffsetPrior& offset, int coarsest, int finest, int threads);
 
 }  // namespace roadstereo

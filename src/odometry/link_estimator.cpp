@@ -82,7 +82,7 @@ FrameLink frame_link(int from, int to, const Alignment& alignment, const Odometr
   return link;
 }
 
-void LinkEstimator::select(const FrameMaps& maps, const OdometryFrame& frame, LinkReference& reference) const {
+void LinkEstimator::select(const LinkMaps& maps, const OdometryFrame& frame, LinkReference& reference) const {
   select_points(maps, reference.points);
   reference.road.reset();
   FrameRoad road;
@@ -98,7 +98,7 @@ bool LinkEstimator::accepted(const Alignment& alignment) const {
 
 /// No motion; where the road planes of both frames agree best, whatever the motion; and motions along the road, which
 /// a road without texture does not show from above. Their step leaves no gap between searches of patches.
-std::vector<RigidMotion> LinkEstimator::starts(const LinkReference& from, const FrameMaps& maps,
+std::vector<RigidMotion> LinkEstimator::starts(const LinkReference& from, const LinkMaps& maps,
                                                const OdometryFrame& frame, double yaw_rad) const {
   constexpr int max_yaw_steps = 4;
   constexpr double yaw_step_rad = to_radians(2);
@@ -139,7 +139,7 @@ std::vector<RigidMotion> LinkEstimator::starts(const LinkReference& from, const 
 
 /// Best alignment from a prediction: from where it puts the points, or else from where their patches are found around
 /// that.
-Alignment LinkEstimator::track(const LinkReference& from, const FrameMaps& maps, const RigidMotion& start,
+Alignment LinkEstimator::track(const LinkReference& from, const LinkMaps& maps, const RigidMotion& start,
                                const LinkPrior& prior) const {
   constexpr double as_usual = 0.93;  // of the correlation of the last links
   const double enough = prior.usual_correlation > 0 ? as_usual * prior.usual_correlation : options_.weak_correlation;
@@ -158,7 +158,7 @@ Alignment LinkEstimator::track(const LinkReference& from, const FrameMaps& maps,
   return best;
 }
 
-std::optional<Alignment> LinkEstimator::link(const LinkReference& from, const FrameMaps& maps,
+std::optional<Alignment> LinkEstimator::link(const LinkReference& from, const LinkMaps& maps,
                                              const OdometryFrame& frame, const LinkPrior& prior) const {
   constexpr double as_before = 0.6;
   Alignment best;

@@ -37,16 +37,16 @@ class LinkEstimator {
   const OdometryOptions& options() const { return options_; }
 
   /// Fills `reference`, whose memory is used again.
-  void select(const FrameMaps& maps, const OdometryFrame& frame, LinkReference& reference) const;
+  void select(const LinkMaps& maps, const OdometryFrame& frame, LinkReference& reference) const;
 
   /// Returns the alignment with the best correlation; nullopt if it or the overlap is too small.
-  std::optional<Alignment> link(const LinkReference& from, const FrameMaps& maps, const OdometryFrame& frame,
+  std::optional<Alignment> link(const LinkReference& from, const LinkMaps& maps, const OdometryFrame& frame,
                                 const LinkPrior& prior) const;
 
  private:
-  std::vector<RigidMotion> starts(const LinkReference& from, const FrameMaps& maps, const OdometryFrame& frame,
+  std::vector<RigidMotion> starts(const LinkReference& from, const LinkMaps& maps, const OdometryFrame& frame,
                                   double yaw_rad) const;
-  Alignment track(const LinkReference& from, const FrameMaps& maps, const RigidMotion& start,
+  Alignment track(const LinkReference& from, const LinkMaps& maps, const RigidMotion& start,
                   const LinkPrior& prior) const;
   bool accepted(const Alignment& alignment) const;
 

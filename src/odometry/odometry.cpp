@@ -54,14 +54,14 @@ struct Odometry::State {
   void require_valid(int frame, const OdometryFrame& maps) const;
   int steps_to(int frame, double time_s) const;
   RigidMotion predicted(int steps) const;
-  std::optional<Alignment> link(const Reference& from, const FrameMaps& maps, const OdometryFrame& frame,
+  std::optional<Alignment> link(const Reference& from, const LinkMaps& maps, const OdometryFrame& frame,
                                 const std::optional<RigidMotion>& start) const {
     return estimator.link(from.seen, maps, frame, {start, 0, offset_prior(), usual_correlation_});
   }
   OffsetPrior offset_prior() const;
   void measure_offset(const Alignment& alignment);
   void record(const Reference& from, int frame, const Alignment& alignment);
-  void make_reference(const FrameMaps& maps, const OdometryFrame& frame);
+  void make_reference(const LinkMaps& maps, const OdometryFrame& frame);
 
   ImagePyramid pyramid_;
   std::optional<Reference> reference_;
@@ -130,7 +130,7 @@ void Odometry::State::record(const Reference& from, int frame, const Alignment& 
   trajectory.frames.push_back(pose);
 }
 
-void Odometry::State::make_reference(const FrameMaps& maps, const OdometryFrame& frame) {
+void Odometry::State::make_reference(const LinkMaps& maps, const OdometryFrame& frame) {
   if (!reference_) reference_.emplace();
   reference_->pose = trajectory.frames.back();
   estimator.select(maps, frame, reference_->seen);
@@ -162,7 +162,7 @@ const FramePose& Odometry::State::add(int frame, const OdometryFrame& maps) {
   width_ = maps.grey.width();
   height_ = maps.grey.height();
   pyramid_.build(maps.grey);
-  const FrameMaps own{pyramid_, maps.disparity, maps.sigma, estimator.calibration().disparity_offset_px};
+  const LinkMaps own{pyramid_, maps.disparity, maps.sigma, estimator.calibration().disparity_offset_px};
   const int steps = steps_to(frame, maps.time_s);
   constexpr double memory = 0.8;
   const double step_s = (maps.time_s - time_s_) / steps;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/order_statistics.hpp"
+#include "core/parabola.hpp"
 #include "core/tukey.hpp"
 #include "odometry/direct_alignment.hpp"
 
@@ -190,10 +191,9 @@ class Search {
   }
 
   /// Maximum of the parabola through three values, −½ … ½.
-  static double vertex(float before, float middle, float after) {
-    const double bend = static_cast<double>(before) + static_cast<double>(after) - 2 * static_cast<double>(middle);
-    return bend < 0 ? std::clamp((static_cast<double>(before) - static_cast<double>(after)) / (2 * bend), -0.5, 0.5)
-                    : 0;
+  static double vertex(double before, double middle, double after) {
+    return second_difference(before, middle, after) < 0 ? std::clamp(parabola_vertex(before, middle, after), -0.5, 0.5)
+                                                        : 0;
   }
 
   ImageView<const std::int16_t> image_;
@@ -260,7 +260,7 @@ RigidMotion solve_motion(const std::vector<Match>& matches, const StereoCalibrat
 
 }  // namespace
 
-RigidMotion match_patches(const ReferencePoints& reference, const FrameMaps& current,
+RigidMotion match_patches(const ReferencePoints& reference, const LinkMaps& current,
                           const StereoCalibration& calibration, const RigidMotion& start, double offset_px, int level,
                           int radius) {
   Search search(current.pyramid.level(level), level, radius);
@@ -278,7 +278,7 @@ RigidMotion match_patches(const ReferencePoints& reference, const FrameMaps& cur
   return solve_motion(matches, calibration, start, min_scale_px);
 }
 
-double patch_correlation(const ReferencePoints& reference, const FrameMaps& current,
+double patch_correlation(const ReferencePoints& reference, const LinkMaps& current,
                          const StereoCalibration& calibration, const RigidMotion& motion, double offset_px) {
   constexpr int level = 1;
   if (current.pyramid.levels() <= level) return 0;

@@ -17,7 +17,7 @@ int cell_side(int width, int height, int count) {
 }
 
 /// Slopes of the disparity from pixels at a distance, when all of them lie on one surface.
-void find_slopes(const FrameMaps& frame, int u, int v, ReferencePoint& point) {
+void find_slopes(const LinkMaps& frame, int u, int v, ReferencePoint& point) {
   constexpr int distance = 4;
   if (u < distance || v < distance || u >= frame.disparity.width() - distance ||
       v >= frame.disparity.height() - distance) {
@@ -40,7 +40,7 @@ int full_pixel(int x, int level, int size) {
 
 class Selector {
  public:
-  Selector(const FrameMaps& frame, int level) : frame_(frame), level_(level), grey_(frame.pyramid.level(level)) {}
+  Selector(const LinkMaps& frame, int level) : frame_(frame), level_(level), grey_(frame.pyramid.level(level)) {}
 
   struct Pixel {
     int u = 0, v = 0;
@@ -87,7 +87,7 @@ class Selector {
     return point;
   }
 
-  static int cells_per_row(const FrameMaps& frame) { return (frame.disparity.width() + error_cell - 1) / error_cell; }
+  static int cells_per_row(const LinkMaps& frame) { return (frame.disparity.width() + error_cell - 1) / error_cell; }
 
  private:
   void find_strength(int v) {
@@ -102,7 +102,7 @@ class Selector {
     }
   }
 
-  const FrameMaps& frame_;
+  const LinkMaps& frame_;
   int level_;
   ImageView<const std::int16_t> grey_;
   std::vector<float> strength_;  // of a row
@@ -110,7 +110,7 @@ class Selector {
 
 /// `margin` ≥ 1: pixels at the border that are not taken.
 template <class Take>
-void for_each_cell(const FrameMaps& frame, int level, int count, int margin, const Take& take) {
+void for_each_cell(const LinkMaps& frame, int level, int count, int margin, const Take& take) {
   const ImageView<const std::int16_t> grey = frame.pyramid.level(level);
   Selector selector(frame, level);
   const int side = cell_side(grey.width(), grey.height(), count);
@@ -148,7 +148,7 @@ bool fill_patch(ImageView<const std::int16_t> grey, int u, int v, TexturePatch& 
   return true;
 }
 
-void select_patches(const FrameMaps& frame, int level, std::vector<TexturePatch>& patches) {
+void select_patches(const LinkMaps& frame, int level, std::vector<TexturePatch>& patches) {
   patches.clear();
   for_each_cell(frame, level, max_patches, TexturePatch::radius + 1, [&](const Selector& selector, int u, int v) {
     TexturePatch patch;
@@ -160,7 +160,7 @@ void select_patches(const FrameMaps& frame, int level, std::vector<TexturePatch>
 
 }  // namespace
 
-void select_points(const FrameMaps& frame, ReferencePoints& points) {
+void select_points(const LinkMaps& frame, ReferencePoints& points) {
   points.levels.resize(static_cast<std::size_t>(frame.pyramid.levels()));
   for (int level = 0; level < frame.pyramid.levels(); ++level) {
     std::vector<ReferencePoint>& selected = points.levels[static_cast<std::size_t>(level)];

@@ -41,8 +41,8 @@ struct ReferencePoints {
 
 inline constexpr double max_jump_px = 1;  ///< between neighbouring disparities of one surface
 
-/// Maps of a frame, W×H.
-struct FrameMaps {
+/// What links need of a frame, W×H.
+struct LinkMaps {
   const ImagePyramid& pyramid;
   ImageView<const float> disparity;  ///< pixels, NaN invalid
   ImageView<const float> sigma;      ///< standard error, pixels
@@ -51,6 +51,6 @@ struct FrameMaps {
 
 /// Selects the pixel with the largest gradient of every cell of a grid that has a disparity, per level of the pyramid,
 /// and patches of texture that verify an alignment.
-void select_points(const FrameMaps& frame, ReferencePoints& points);
+void select_points(const LinkMaps& frame, ReferencePoints& points);
 
 }  // namespace roadstereo

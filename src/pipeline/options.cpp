@@ -1,11 +1,11 @@
 #include "roadstereo/options.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <utility>
 
 #include "core/edit_distance.hpp"
+#include "core/shortest_text.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
@@ -186,11 +186,8 @@ std::string to_text(bool value) {
 std::string to_text(int value) {
   return std::to_string(value);
 }
-/// The shortest text that reads back as the same number.
 std::string to_text(double value) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
+  return shortest_text(value);
 }
 template <class Enum>
 requires std::is_enum_v<Enum> std::string to_text(Enum value) {
@@ -198,6 +195,20 @@ requires std::is_enum_v<Enum> std::string to_text(Enum value) {
     if (meaning == value) return word;
   }
   return "";
+}
+
+constexpr OptionKind kind_of(bool) {
+  return OptionKind::boolean;
+}
+constexpr OptionKind kind_of(int) {
+  return OptionKind::whole;
+}
+constexpr OptionKind kind_of(double) {
+  return OptionKind::real;
+}
+template <class Word>
+OptionKind kind_of(const Word&) {
+  return OptionKind::word;
 }
 
 [[noreturn]] void refuse(const std::string& key, const std::string& value, const std::string& wanted) {
@@ -265,9 +276,7 @@ std::string nearest_key(const PipelineOptions& options, const std::string& key) 
 std::vector<OptionText> list_options(const PipelineOptions& options) {
   std::vector<OptionText> list;
   visit_options(options, [&](const char* key, const auto& value, const char* description) {
-    using Value = std::decay_t<decltype(value)>;
-    constexpr bool is_text = std::is_enum_v<Value> || std::is_same_v<Value, std::string>;
-    list.push_back({key, to_text(value), description, is_text});
+    list.push_back({key, to_text(value), description, kind_of(value)});
   });
   return list;
 }

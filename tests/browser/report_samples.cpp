@@ -95,7 +95,7 @@ void write_sample(const std::filesystem::path& folder, const synth::SyntheticPai
   }
   if (with_image) {
     input.sheet = io::encode_png(
-        io::result_sheet(pair.left.view(), truth.disparity, truth.transformed, true_road_px, {}, "sample").view());
+        io::result_sheet(pair.left.view(), 0, truth.disparity, truth.transformed, true_road_px, {}, "sample").view());
   }
   io::OutputFolder output(folder);
   io::add_damage_files(output, input);
@@ -150,7 +150,7 @@ void write_flight(const std::filesystem::path& folder, const synth::SyntheticPai
   }
   input.candidates = io::worst_first(damages, true);
   input.segments = io::road_segments(frames, damages);
-  input.thumbnails = {{"0", io::frame_thumbnail(pair.left.view(), truth.map)}};
+  input.thumbnails = {{"0", io::frame_thumbnail(pair.left.view(), 0, truth.map)}};
   io::OutputFolder output(folder);
   output.add("report.html", io::flight_report(input));
   output.commit();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "core/parallel.hpp"
 #include "roadstereo/matcher.hpp"
 #include "tests/cli/road_command_test.hpp"
 
@@ -26,6 +27,13 @@ TEST_F(BenchmarkCommand, MeasuresStagesAndOpenCv) {
   double stages = 0;
   for (const auto& stage : figures["stages"]) stages += stage["min_ms"].get<double>();
   EXPECT_LE(stages, figures["total"]["max_ms"].get<double>());
+}
+
+// With oneTBB no more than there are cores.
+TEST_F(BenchmarkCommand, ThreadsAreThoseOfPipeline) {
+  const Outcome outcome = run("benchmark --size 96x64 --disparities 16 --runs 1 --no-peers --threads 64 --json a.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(json_file("a.json")["threads"], resolve_threads(64));
 }
 
 TEST_F(BenchmarkCommand, TakesPairOfFiles) {

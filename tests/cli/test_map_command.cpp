@@ -66,6 +66,18 @@ TEST_F(MapCommand, SaysHowManyFramesHaveNoPose) {
   EXPECT_EQ(result["reasons"][0], "1 of 2 frames have no pose in one.txt");
 }
 
+// Frames 1 and 3 of five: no others were asked for.
+TEST_F(MapCommand, FramesLeftOutByInspectNeedNoPose) {
+  const Outcome made = run("synth --scene nadir --frames 5 --flight step=0.1 --size 256x144 --output flight --quiet");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Outcome outcome = run("inspect flight --map --from 1 --to 3 --every 2 --output run --quiet");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(json_file("run/map/map.json")["frames"], 2);
+  EXPECT_TRUE(json_file("run/map/map.json")["reasons"].empty()) << json_file("run/map/map.json")["reasons"];
+  ASSERT_EQ(run("map run --output map --quiet").exit_code, 0);
+  EXPECT_TRUE(json_file("map/map.json")["reasons"].empty()) << json_file("map/map.json")["reasons"];
+}
+
 /// What a standing camera shows again and again says the same once more: the map is that of one frame of each place.
 TEST_F(MapCommand, FramesOfStandingCameraCountOnce) {
   make_flight("320x180");
@@ -133,6 +145,21 @@ TEST_F(SlowMapCommand, SaysWhatChangedBetweenDays) {
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + static_cast<std::ptrdiff_t>(map["changes"].size()));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "days/.tiles"));
   expect_complaint(run("map uav flat --calibration uav/calibration.yaml --day spring --output days" + poses), "1 days");
+}
+
+// 1 717 200 000 s is the first of June 2024, 0:00 UTC. The first pair of both recordings has no left image, which has
+// its time.
+TEST_F(MapCommand, DayIsThatOfFirstGoodPair) {
+  make_flight("160x90");
+  std::filesystem::remove(folder_ / "flight/left/000000.png");
+  std::filesystem::copy(folder_ / "flight", folder_ / "later", std::filesystem::copy_options::recursive);
+  write("flight/times.txt", std::string("1717200000\n"));
+  write("later/times.txt", std::string("1717286400\n"));
+  const Outcome outcome =
+      run("map flight later --calibration flight/calibration.yaml --output map --quiet "
+          "--trajectory flight/trajectory_kitti.txt --trajectory later/trajectory_kitti.txt");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(json_file("map/map.json")["days"], nlohmann::json({"2024-06-01", "2024-06-02"}));
 }
 
 TEST_F(MapCommand, RunIsMappedWithItsOwnOptions) {

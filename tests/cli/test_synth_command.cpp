@@ -55,6 +55,19 @@ TEST_F(SynthCommand, ShorterSequenceReplacesLonger) {
   EXPECT_TRUE(fs::exists(folder_ / "drive/times.txt"));
 }
 
+TEST_F(SynthCommand, SequenceReplacesPair) {
+  make_road();
+  ASSERT_EQ(run("synth --scene uav --size 64x48 --frames 2 --output road --quiet").exit_code, 0);
+  EXPECT_EQ(names_in(folder_ / "road"),
+            (std::set<std::string>{"calibration.yaml", "left", "right", "times.txt", "trajectory_kitti.txt", "truth",
+                                   "truth_disparity", "truth_labels", "truth_road", "truth_visible"}));
+  // A pair without a truth is not its own.
+  ASSERT_EQ(run("synth --scene uav --size 64x48 --output drive --quiet").exit_code, 0);
+  fs::remove(folder_ / "drive/truth.json");
+  ASSERT_EQ(run("synth --scene uav --size 64x48 --frames 2 --output drive --quiet").exit_code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "drive/left.png"));
+}
+
 TEST_F(SynthCommand, FollowsFlightPath) {
   const Outcome outcome = run(
       "synth --scene flat --frames 3 --size 64x36 --flight roll=8,period=4,climb=0,jump=2,jump_roll=-3,jump_pitch=0 "

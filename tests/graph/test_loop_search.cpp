@@ -69,6 +69,38 @@ TEST_P(LoopSearchOfPlace, IsLinked) {
 
 INSTANTIATE_TEST_SUITE_P(Yaws, LoopSearchOfPlace, testing::Values(0, 25, 180));
 
+/// The same cameras and disparities, counted from another zero: those of the road are negative.
+TEST(LoopSearch, DisparityOffsetChangesNoLoop) {
+  constexpr double offset_px = 40;
+  std::vector<KnownFrame> frames{known_frame(scene_at(0, 0, 0)), known_frame(scene_at(0, 12, 0)),
+                                 known_frame(scene_at(0.15, 0.25, 25))};
+  Trajectory trajectory;
+  for (const KnownFrame& frame : frames) {
+    FramePose pose;
+    pose.frame = static_cast<int>(trajectory.frames.size());
+    pose.camera_to_world = matrix_of(frame.pose);
+    for (std::size_t k = 0; k < 6; ++k) pose.covariance[7 * k] = pose.frame * (k < 3 ? 1e-3 : 1e-5);
+    trajectory.frames.push_back(pose);
+  }
+  StereoCalibration calibration = scene_at(0, 0, 0).rig.calibration();
+  const auto loops = [&] {
+    LoopSearch search(calibration, std::filesystem::path(testing::TempDir()) / "roadstereo_other_zero");
+    for (int i = 0; i < 3; ++i) search.add(i, frames[static_cast<std::size_t>(i)].maps());
+    return search.find(trajectory, trajectory);
+  };
+  const std::vector<LoopLink> usual = loops();
+  calibration.disparity_offset_px = offset_px;
+  for (KnownFrame& frame : frames) {
+    std::transform(frame.disparity.row(0), frame.disparity.row(0) + frame.disparity.pixels(), frame.disparity.row(0),
+                   [](float d) { return d - static_cast<float>(offset_px); });
+    frame.plane.a0 -= offset_px;
+  }
+  const std::vector<LoopLink> other = loops();
+  ASSERT_EQ(usual.size(), 1U);
+  ASSERT_EQ(other.size(), 1U);
+  for (std::size_t k = 0; k < 12; ++k) EXPECT_NEAR(other[0].link.motion[k], usual[0].link.motion[k], 1e-5) << k;
+}
+
 TEST(LoopSearch, PlaceThatIsNeverLeftHasNoLoop) {
   const KnownFrame frame = known_frame(scene_at(0, 0, 0));
   LoopSearch search(scene_at(0, 0, 0).rig.calibration(),

@@ -206,9 +206,20 @@ cv::Vec3b pixel(const Frame& frame, int u, int v) {
   return {frame.bytes[at], frame.bytes[at + 1], frame.bytes[at + 2]};
 }
 
+/// 16-bit samples of one value, but for the last.
+Frame wide_frame(int width, int height, unsigned sample, unsigned last) {
+  Frame frame{{}, width, height, SampleType::u16};
+  for (int i = 0; i < width * height; ++i) {
+    const unsigned value = i + 1 < width * height ? sample : last;
+    frame.bytes.push_back(static_cast<std::uint8_t>(value & 255U));
+    frame.bytes.push_back(static_cast<std::uint8_t>(value >> 8U));
+  }
+  return frame;
+}
+
 TEST(DamageOverlay, OutlinesHaveColourOfSeverity) {
   const TrueDamage truth = damage_from_truth(road());
-  const Frame overlay = damage_overlay(road().left.view(), truth.map);
+  const Frame overlay = damage_overlay(road().left.view(), 0, truth.map);
   ASSERT_EQ(overlay.width, 480);
   ASSERT_EQ(overlay.height, 270);
   const Damage& deepest = truth.map.damages.front();
@@ -241,7 +252,7 @@ TEST(DamageOverlay, LineWidthGrowsWithImage) {
     for (int v = 60 * scale; v <= 140 * scale; ++v) std::fill_n(map.ids.row(v) + 100 * scale, 100 * scale + 1, 1);
     map.damages.push_back(damage);
     Frame grey{std::vector<std::uint8_t>(map.ids.pixels(), 128), 300 * scale, 200 * scale};
-    const Frame overlay = damage_overlay(grey.view(), map);
+    const Frame overlay = damage_overlay(grey.view(), 0, map);
     int coloured = 0;
     for (int v = 0; v < overlay.height; ++v) {
       for (int u = 0; u < overlay.width; ++u) coloured += distance(pixel(overlay, u, v), {70, 70, 225}) < 60 ? 1 : 0;
@@ -255,7 +266,20 @@ TEST(DamageOverlay, LineWidthGrowsWithImage) {
 TEST(DamageOverlay, RejectsImageOfOtherSize) {
   const TrueDamage truth = damage_from_truth(road());
   const Frame small{std::vector<std::uint8_t>(100 * 100), 100, 100};
-  EXPECT_THROW(damage_overlay(small.view(), truth.map), Error);
+  EXPECT_THROW(damage_overlay(small.view(), 0, truth.map), Error);
+}
+
+/// 12 bits in 16: samples of 468 are 468 · 255 / 4095 = 29, also in a frame with a pixel that 10 bits do not hold.
+TEST(DamageOverlay, WhiteIsThatOfProcessing) {
+  for (const unsigned brightest : {468U, 1100U}) {
+    const Frame frame = wide_frame(64, 48, 468, brightest);
+    DamageMap map = make_empty_damage_map(64, 48, "");
+    EXPECT_EQ(pixel(damage_overlay(frame.view(), 4095, map), 5, 5), cv::Vec3b(29, 29, 29)) << brightest;
+    DamageReportInput input{map};
+    input.left = frame.view();
+    input.white_level = 4095;
+    EXPECT_EQ(pixel(damage_background(input), 5, 5), cv::Vec3b(29, 29, 29)) << brightest;
+  }
 }
 
 TEST(DamageReport, EscapesText) {

@@ -34,8 +34,8 @@ std::string name_of_file(FrameFile file, std::int64_t index) {
 
 std::vector<std::uint8_t> sheet_of(const FlightJob& job) {
   const auto geometry = job.result.roll_found ? std::optional(job.result.geometry) : std::nullopt;
-  return io::encode_png(io::result_sheet(job.pair.left.view(), job.result.disparity, job.result.transformed,
-                                         job.result.delta_t, geometry, job.frame.name)
+  return io::encode_png(io::result_sheet(job.pair.left.view(), job.frame.white_level, job.result.disparity,
+                                         job.result.transformed, job.result.delta_t, geometry, job.frame.name)
                             .view());
 }
 
@@ -52,7 +52,7 @@ std::vector<std::uint8_t> content_of(FrameFile file, const std::optional<StereoC
       return io::encode_ply(
           cloud_from_disparity(job.result.disparity, job.pair.left.view(), job.frame.white_level, calibration.value()));
     case FrameFile::overlay:
-      return io::encode_png(io::damage_overlay(job.pair.left.view(), job.damage).view());
+      return io::encode_png(io::damage_overlay(job.pair.left.view(), job.frame.white_level, job.damage).view());
   }
   return {};
 }

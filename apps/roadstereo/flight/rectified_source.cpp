@@ -8,8 +8,9 @@
 
 namespace roadstereo::cli {
 
-RectifiedSource::RectifiedSource(std::unique_ptr<io::FrameSource> source, const std::vector<std::string>& calibration)
-    : source_(std::move(source)) {
+RectifiedSource::RectifiedSource(std::unique_ptr<io::FrameSource> source, const std::vector<std::string>& calibration,
+                                 int threads)
+    : source_(std::move(source)), threads_(threads) {
   if (!calibration.empty()) {
     file_ = io::read_calibration(calibration[0], calibration.size() > 1 ? calibration[1] : "");
     file_name_ = calibration[0];
@@ -23,7 +24,7 @@ RectifiedSource::RectifiedSource(std::unique_ptr<io::FrameSource> source, const 
   if (!file_->rectified && !file_->rig && file_->rigs.empty())
     fail(file_name_, ": there is no stereo calibration in this file");
   if (file_->rig && file_->rig->width > 0) {
-    rectifier_.emplace(*file_->rig, file_->rig->width, file_->rig->height);
+    rectifier_.emplace(*file_->rig, file_->rig->width, file_->rig->height, threads_);
     calibration_ = rectifier_->calibration();
   }
 }
@@ -35,7 +36,7 @@ void RectifiedSource::prepare(const io::SourcePair& first) {
     if (!calibration_) calibration_ = file_->rectified;
   }
   if (file_ && file_->rig && !rectifier_) {
-    rectifier_.emplace(*file_->rig, first.left.width, first.left.height);
+    rectifier_.emplace(*file_->rig, first.left.width, first.left.height, threads_);
     calibration_ = rectifier_->calibration();
   }
   prepared_ = true;
@@ -51,7 +52,7 @@ void RectifiedSource::rectify(io::SourcePair& pair) {
   if (!pair.error.empty()) return;
   try {
     if (!prepared_) prepare(pair);
-    const double needed = needed_white_level(pair);  // the rectified images overshoot
+    const double needed = needed_white_level(pair);  // of all pixels: rectification crops
     if (rectifier_) {
       io::RectifiedPair rectified = rectifier_->rectify(pair.left, pair.right);
       pair.left = std::move(rectified.left);

@@ -15,9 +15,10 @@ namespace roadstereo::cli {
 /// A source whose pairs are rectified with its calibration.
 class RectifiedSource {
  public:
-  /// `calibration`: empty (then that of the source, if any), one file, or two, left and right. Throws Error
-  /// naming a file that is not a calibration.
-  RectifiedSource(std::unique_ptr<io::FrameSource> source, const std::vector<std::string>& calibration);
+  /// `calibration`: empty (then that of the source, if any), one file, or two, left and right. `threads`: workers
+  /// of the rectification, 0 takes all cores. Throws Error naming a file that is not a calibration.
+  RectifiedSource(std::unique_ptr<io::FrameSource> source, const std::vector<std::string>& calibration,
+                  int threads = 0);
 
   /// Returns the next pair, rectified, or nullopt at the end. `error` is set if it cannot be rectified. The white level
   /// of 16-bit pairs is that of the brightest one so far (io::find_white_level): a recording may begin in the dark.
@@ -43,6 +44,7 @@ class RectifiedSource {
   double needed_white_level(const io::SourcePair& pair) const;
 
   std::unique_ptr<io::FrameSource> source_;
+  int threads_;
   std::optional<io::CalibrationFile> file_;
   std::string file_name_;
   std::string format_;

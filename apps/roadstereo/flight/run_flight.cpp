@@ -252,18 +252,20 @@ void FlightPipeline::commit_frame(FlightJob& job) {
 void FlightPipeline::add_pictures(FlightJob& job, const std::vector<std::int64_t>& road_damages) {
   if (job.frame.status != io::FrameStatus::good) return;
   const FrameView left = job.pair.left.view();
+  const double white_level = job.frame.white_level;
   if (const auto name = thumbnail_name(job.sequence)) {
-    job.files.push_back({*name, io::frame_thumbnail(left, job.damage)});
+    job.files.push_back({*name, io::frame_thumbnail(left, white_level, job.damage)});
   }
   io::DamageReportInput input{job.damage};
   input.left = left;
+  input.white_level = white_level;
   input.disparity = job.result.disparity;
   input.calibration = flight_.source.calibration();
   for (std::size_t i = 0; i < job.frame.damages.size(); ++i) {
     const io::RoadDamage& known = flight_.results.inventory().damages()[static_cast<std::size_t>(road_damages[i]) - 1];
     if (known.frame != job.frame.index) continue;
     const Damage& damage = job.frame.damages[i];
-    job.files.push_back({damage_picture_name(known.id), io::damage_picture(left, job.damage, damage)});
+    job.files.push_back({damage_picture_name(known.id), io::damage_picture(left, white_level, job.damage, damage)});
     job.files.push_back(text_file(damage_section_name(known.id), io::road_damage_section(input, damage, known.id)));
   }
 }

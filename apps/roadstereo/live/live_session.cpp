@@ -51,7 +51,7 @@ LiveSession::LiveSession(const LiveOptions& options, SourceOpener opener) : boar
   std::optional<io::CalibrationFile> own;
   if (options.calibration.empty()) own = source->calibration();
   auto rectifier = std::make_unique<RectifiedSource>(std::make_unique<CalibrationOnly>(own, source->description()),
-                                                     options.calibration);
+                                                     options.calibration, options.processing.pipeline.threads);
   processing_ = std::make_unique<Processing>(options.processing, std::move(rectifier), board_, captured_);
   if (!options.record.empty()) {
     const auto folder =

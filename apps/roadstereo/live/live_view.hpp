@@ -23,6 +23,7 @@ struct LiveView {
   double clock_s = 0;                    ///< the same as system time, seconds since 1970
   double latency_ms = 0;                 ///< from arrival to publication
   Frame left;                            ///< rectified
+  double white_level = 0;                ///< of the left image, as in to_grey
   Image<float> transformed;              ///< ℓ', pixels
   double delta_t = 0;                    ///< δt, pixels
   Image<std::uint16_t> ids;              ///< of the damage at each pixel, 0: none

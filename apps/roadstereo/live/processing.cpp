@@ -43,6 +43,7 @@ std::optional<Processing::Matched> Processing::match(CapturedPair captured) {
     if (captured.pair.white_level > 0) pipeline().set_white_level(captured.pair.white_level);
     if (auto_mask_.apply(pairs_++, left, right, pipeline())) board_.set_static_mask(auto_mask_.record());
     pipeline().process(left, right, matched.result);
+    captured.pair.white_level = pipeline().options().white_level;
   } catch (const SystemError&) {
     throw;
   } catch (const Error& error) {
@@ -79,8 +80,7 @@ void Processing::publish_messages(const Matched& matched, const DamageMap& map) 
   if (!options_.dds_domain) return;
   if (!messages_) messages_.emplace(*options_.dds_domain, matched.calibration);
   const io::SourcePair& pair = matched.captured.pair;
-  const double white_level = pair.white_level > 0 ? pair.white_level : options_.pipeline.white_level;
-  messages_->publish(pair.left.view(), white_level, matched.captured.clock_s, matched.result, map);
+  messages_->publish(pair.left.view(), pair.white_level, matched.captured.clock_s, matched.result, map);
 }
 
 LiveView Processing::view_of(Matched& matched) {
@@ -98,6 +98,7 @@ LiveView Processing::view_of(Matched& matched) {
   view.arrival = matched.captured.arrival;
   view.clock_s = matched.captured.clock_s;
   view.left = std::move(matched.captured.pair.left);
+  view.white_level = matched.captured.pair.white_level;
   view.transformed = std::move(result.transformed);
   view.delta_t = result.delta_t;
   if (!result.roll_found) return view;

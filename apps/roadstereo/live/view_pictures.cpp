@@ -31,7 +31,7 @@ ViewPicture left_picture(const LiveView& view) {
   DamageMap map;
   map.damages = view.damages;
   map.ids = view.ids;
-  return picture_of(io::damage_overlay(view.left.view(), map).view());
+  return picture_of(io::damage_overlay(view.left.view(), view.white_level, map).view());
 }
 
 /// Returns a round number, so that successive views have equal scales.

@@ -122,8 +122,8 @@ class MapBuilder {
 
   Pass open_pass(const MapPass& from) const {
     Pass pass;
-    pass.source =
-        std::make_unique<RectifiedSource>(io::open_source(from.source, from.source_options), from.calibration);
+    pass.source = std::make_unique<RectifiedSource>(io::open_source(from.source, from.source_options), from.calibration,
+                                                    from.options.threads);
     if (!from.find_white_level) pass.source->ignore_white_level();
     if (pass.source->source().live()) fail(from.source[0], ": a camera has no trajectory; record it first");
     const Trajectory trajectory = io::read_trajectory(from.trajectory);
@@ -181,15 +181,20 @@ class MapBuilder {
   void tell_missing_poses(const Pass& pass, const MapPass& from) {
     const std::optional<std::int64_t> size = pass.source->source().size();
     if (!size) return;
-    const std::int64_t frames = (*size + plan_.every - 1) / plan_.every;
-    const std::int64_t missing = frames - static_cast<std::int64_t>(pass.poses.size());
+    const std::int64_t end = from.to ? std::min(*from.to + 1, *size) : *size;
+    std::int64_t frames = 0, missing = 0;
+    for (std::int64_t frame = from.from; frame < end; frame += from.every) {
+      if (frame % plan_.every != 0) continue;
+      ++frames;
+      missing += pass.poses.count(frame) == 0;
+    }
     if (missing > 0) add_reason(fmt::format("{} of {} frames have no pose in {}", missing, frames, from.trajectory));
   }
 
   void add_pair(const MapPass& from, const RectifiedSource& source, const io::SourcePair& pair, const FramePose& pose,
                 std::optional<Pipeline>& pipeline) {
-    if (!state_.day) state_.day = day_of(from, pair.time_s);
     if (!pair.error.empty()) return add_reason(pair.error);
+    if (!state_.day) state_.day = day_of(from, pair.time_s);
     if (!pipeline) {
       if (from.options.rig_bias) {
         from.options.rig_bias->require_rig(pair.left.width, pair.left.height, source.calibration());
@@ -202,7 +207,7 @@ class MapBuilder {
     state_.pipeline = pipeline->carried();
   }
 
-  /// Index of the day of a recording whose first frame has this time.
+  /// Index of the day of a recording whose first good pair has this time.
   std::size_t day_of(const MapPass& pass, double time_s) {
     std::string name = io::valid_utf8(pass.day);
     const auto time = io::utc_time(time_s + pass.time_offset_s);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,11 +17,14 @@ struct MapPass {
   io::SourceOptions source_options;
   std::vector<std::string> calibration;  ///< empty: that of the source
   std::string trajectory;                ///< file of the poses
-  std::string crs;                       ///< of the poses of a run; empty: none, or unknown
+  std::int64_t from = 0;             ///< frames that should have a pose, of a run those that it processed: the first
+  std::optional<std::int64_t> to{};  ///< the last one; absent: the end
+  std::int64_t every = 1;            ///< every N-th of them
+  std::string crs;                   ///< of the poses of a run; empty: none, or unknown
   PipelineOptions options;
   bool find_white_level = true;  ///< determines it from the pairs of a 16-bit source
   Image<std::uint8_t> mask;      ///< not 0 left out; empty: none
-  std::string day;               ///< empty: by the time of its first frame
+  std::string day;               ///< empty: by the time of its first good pair
   double time_offset_s = 0;      ///< added to the times of the frames
 };
 

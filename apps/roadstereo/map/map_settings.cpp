@@ -54,7 +54,11 @@ std::vector<MapPass> runs_of(const MapSettings& settings) {
     if (trajectory.empty()) {
       require_own_crs(folder, passes.back(), settings.crs);
     } else {
-      passes.back().trajectory = trajectory[passes.size() - 1];
+      MapPass& pass = passes.back();
+      pass.trajectory = trajectory[passes.size() - 1];
+      pass.from = 0;
+      pass.to.reset();
+      pass.every = 1;
     }
     passes.back().options.threads = settings.processing.threads;
     if (settings.processing.engine != ProcessingSettings().engine) passes.back().options.engine = options.engine;

@@ -64,6 +64,9 @@ MapPass pass_of(const fs::path& folder, const Json& summary) {
   source.max_time_difference_ms = inputs.at("max_time_difference_ms").get<double>();
   source.rate_hz = inputs.at("rate_hz").get<double>();
   pass.source_options = make_source_options(source);
+  pass.from = summary.at("from").get<std::int64_t>();
+  if (const Json& to = summary.at("to"); !to.is_null()) pass.to = to.get<std::int64_t>();
+  pass.every = summary.at("every").get<std::int64_t>();
   if (const Json& crs = summary.at("crs"); !crs.is_null()) pass.crs = crs.get<std::string>();
   pass.time_offset_s = inputs.at("track_offset_s").get<double>();
   const std::string mask = inputs.at("mask").get<std::string>();

@@ -17,6 +17,7 @@ namespace roadstereo::io {
 struct DamageReportInput {
   const DamageMap& map;
   FrameView left{};                                         ///< absent: the coloured transformed map is shown instead
+  double white_level = 0;                                   ///< of the left image, as in to_grey
   ImageView<const float> disparity{};                       ///< ℓ, px; NaN invalid
   ImageView<const float> transformed{};                     ///< ℓ', px; marks the holes if ℓ is absent
   std::optional<StereoCalibration> calibration{};           ///< with ℓ: cross-sections and 3-D views are metric

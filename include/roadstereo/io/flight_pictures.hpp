@@ -11,11 +11,14 @@
 namespace roadstereo::io {
 
 /// Encodes a thumbnail of the left image with the outlines of its damages as JPEG, at most `width` pixels wide.
-std::vector<std::uint8_t> frame_thumbnail(const FrameView& left, const DamageMap& map, int width = 220);
+/// `white_level` as in to_grey.
+std::vector<std::uint8_t> frame_thumbnail(const FrameView& left, double white_level, const DamageMap& map,
+                                          int width = 220);
 
 /// Encodes the surroundings of one damage in the left image with its outline as JPEG, at most `side`×`side` pixels.
-std::vector<std::uint8_t> damage_picture(const FrameView& left, const DamageMap& map, const Damage& damage,
-                                         int side = 260);
+/// `white_level` as in to_grey.
+std::vector<std::uint8_t> damage_picture(const FrameView& left, double white_level, const DamageMap& map,
+                                         const Damage& damage, int side = 260);
 
 /// Returns the section of one damage for `flight_report`: values, image, depths, cross-section and 3-D view. `id`: of
 /// the road damage. Throws Error if the sizes of the maps differ.

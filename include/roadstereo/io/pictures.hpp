@@ -27,13 +27,11 @@ ColourScale transformed_scale(ImageView<const float> transformed, double delta_t
 /// Colours a map, invalid pixels black, and adds a scale bar at its right.
 Frame colour_map(ImageView<const float> map, const ColourScale& scale);
 
-/// Draws the v-disparity histogram (row against disparity, brighter = more pixels) with the fitted line α0 + α1·y(ψ):
-/// the disparity of the road at the middle column of each row; dashed at the first and last column if there is roll.
-Frame v_disparity_picture(ImageView<const float> disparity, const std::optional<RollEstimate>& geometry);
-
-/// Draws four titled panels: left image, disparity, transformed disparity, v-disparity histogram.
-Frame result_sheet(const FrameView& left, ImageView<const float> disparity, ImageView<const float> transformed,
-                   double delta_t, const std::optional<RollEstimate>& geometry, const std::string& title);
+/// Draws four titled panels: left image (`white_level` as in to_grey), disparity, transformed disparity, v-disparity
+/// histogram.
+Frame result_sheet(const FrameView& left, double white_level, ImageView<const float> disparity,
+                   ImageView<const float> transformed, double delta_t, const std::optional<RollEstimate>& geometry,
+                   const std::string& title);
 
 }  // namespace roadstereo::io
 #pragma GCC visibility pop

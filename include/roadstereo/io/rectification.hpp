@@ -19,9 +19,9 @@ struct RectifiedPair {
 /// Undistorts and rectifies pairs of one rig. The pixel maps are computed once.
 class Rectifier {
  public:
-  /// For frames of this size. Throws Error if the rig has another size, or if its right camera is not to the right of
-  /// the left one (the message names its position).
-  Rectifier(const StereoRig& rig, int width, int height);
+  /// For frames of this size; `threads`: workers, 0 takes all cores. Throws Error if the rig has another size, or if
+  /// its right camera is not to the right of the left one (the message names its position).
+  Rectifier(const StereoRig& rig, int width, int height, int threads = 0);
   ~Rectifier();
   Rectifier(Rectifier&&) noexcept;
   Rectifier& operator=(Rectifier&&) noexcept;
@@ -38,7 +38,7 @@ class Rectifier {
 };
 
 /// Rectifies one pair, see Rectifier.
-RectifiedPair rectify(const Frame& left, const Frame& right, const StereoRig& rig);
+RectifiedPair rectify(const Frame& left, const Frame& right, const StereoRig& rig, int threads = 0);
 
 }  // namespace roadstereo::io
 #pragma GCC visibility pop

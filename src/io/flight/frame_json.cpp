@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "io/json_number.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/flight_frame.hpp"
 
@@ -17,9 +18,7 @@ class Writer {
  public:
   Json take() { return std::move(document_); }
 
-  void operator()(const char* name, double value) {
-    document_[name] = std::isfinite(value) ? Json(value) : Json(nullptr);
-  }
+  void operator()(const char* name, double value) { document_[name] = json_number(value); }
   template <class Value>
   void operator()(const char* name, const Value& value) {
     document_[name] = written(value);

@@ -129,10 +129,8 @@ Columns find_columns(const std::string& where, const std::vector<std::string_vie
 /// NaN unless the receiver knows it.
 double standard_error(const std::string& where, const std::optional<Column>& column,
                       const std::vector<std::string_view>& cells) {
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  if (!column || cells[column->index].empty()) return unknown;
-  const double value = parse_number(where, column->name, cells[column->index]);
-  return value > 0 ? value : unknown;
+  const double value = column ? parse_known(where, column->name, cells[column->index]) : 0;
+  return value > 0 ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// A row of PX4's vehicle_gps_position. Integers are 1e-7 degrees and millimetres in the columns lat, lon, alt.
@@ -149,7 +147,9 @@ std::optional<TrackPoint> read_px4_row(const std::string& where, const Columns& 
   point.lon_deg = degrees * number(columns.lon);
   parse_latitude(where, columns.lat.name, fixed_text(point.lat_deg, 6));
   parse_longitude(where, columns.lon.name, fixed_text(point.lon_deg, 6));
-  if (columns.alt) point.alt_m = (whole ? 1e-3 : 1) * number(*columns.alt);
+  if (columns.alt) {
+    point.alt_m = (whole ? 1e-3 : 1) * parse_known(where, columns.alt->name, cells[columns.alt->index]);
+  }
   return point;
 }
 
@@ -192,7 +192,7 @@ std::optional<TrackPoint> read_row(const std::string& where, const Columns& colu
   point.time_s = parse_any_time(where, columns.time.name, cells[columns.time.index]);
   point.lat_deg = parse_latitude(where, columns.lat.name, cells[columns.lat.index]);
   point.lon_deg = parse_longitude(where, columns.lon.name, cells[columns.lon.index]);
-  if (columns.alt) point.alt_m = parse_altitude(where, columns.alt->name, cells[columns.alt->index]);
+  if (columns.alt) point.alt_m = parse_known(where, columns.alt->name, cells[columns.alt->index]);
   point.heading_deg = heading_of(where, columns, cells);
   add_standard_errors(where, columns, cells, point);
   return point;

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "io/file_bytes.hpp"
 #include "io/geo/track_formats.hpp"
 #include "io/source/message_log.hpp"
@@ -9,16 +7,6 @@ namespace roadstereo::io {
 namespace {
 
 constexpr std::size_t max_bytes = std::size_t{1} << 28U;  // a day at 10 Hz is about 100 MB of GPX
-
-TrackText read_text(const std::string& path) {
-  const std::vector<std::uint8_t> bytes = read_file(path, max_bytes);
-  if (std::find(bytes.begin(), bytes.end(), std::uint8_t{0}) != bytes.end()) {
-    fail(path, ": this is neither a text file nor a bag; a track must be GPX, CSV, NMEA, DJI's SRT or a bag");
-  }
-  std::string text(bytes.begin(), bytes.end());
-  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // byte order mark
-  return {path, std::move(text)};
-}
 
 std::vector<TrackLine> read_lines(const TrackText& file) {
   const std::size_t first = file.text.find_first_not_of(" \t\r\n");
@@ -54,7 +42,9 @@ void check_times(const std::string& path, const std::vector<TrackLine>& lines) {
 
 Track read_track(const std::string& path, const TrackOptions& options) {
   options.validate();
-  std::vector<TrackLine> lines = is_message_log(path) ? read_track_bag(path) : read_lines(read_text(path));
+  constexpr const char* is_not = "neither a text file nor a bag; a track must be GPX, CSV, NMEA, DJI's SRT or a bag";
+  std::vector<TrackLine> lines =
+      is_message_log(path) ? read_track_bag(path) : read_lines({path, read_text(path, max_bytes, is_not)});
   std::erase_if(lines, [](const TrackLine& line) { return has_no_fix(line.point); });
   check_times(path, lines);
   std::vector<TrackPoint> points;

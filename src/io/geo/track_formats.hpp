@@ -42,7 +42,7 @@ std::string name_line(const std::string& path, std::size_t line);
 double parse_latitude(const std::string& where, const std::string& name, std::string_view text);
 double parse_longitude(const std::string& where, const std::string& name, std::string_view text);
 /// Returns NaN if the text is empty or "nan".
-double parse_altitude(const std::string& where, const std::string& name, std::string_view text);
+double parse_known(const std::string& where, const std::string& name, std::string_view text);
 /// Returns NaN if the text is empty or "nan".
 double parse_heading(const std::string& where, const std::string& name, std::string_view text);
 /// Parses ISO 8601. Text without a zone is UTC if `is_utc`, else an error.

@@ -74,7 +74,7 @@ TrackLine read_point(const std::string& path, const pugi::xml_node& node, LineCo
   const pugi::xml_node time = child_called(node, "time");
   if (!time) fail(where, ": this trkpt has no <time>");
   read.point.time_s = parse_date_time(where, "time", text_of(time), true);
-  read.point.alt_m = parse_altitude(where, "ele", text_of(child_called(node, "ele")));
+  read.point.alt_m = parse_known(where, "ele", text_of(child_called(node, "ele")));
   read.point.heading_deg = heading_of(where, node);
   return read;
 }

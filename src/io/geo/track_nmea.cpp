@@ -102,7 +102,7 @@ class NmeaReader {
   }
   void read_gga(const std::string& where, const std::vector<std::string_view>& fields) {
     if (fields[1].empty() || fields[9].empty()) return;
-    altitude_ = {second_of_day(where, fields[1]), parse_altitude(where, "altitude", fields[9])};
+    altitude_ = {second_of_day(where, fields[1]), parse_known(where, "altitude", fields[9])};
     if (!points.empty() && altitude_.second_of_day == last_second_) points.back().point.alt_m = altitude_.metres;
   }
 

@@ -55,7 +55,7 @@ bool read_gps(const std::string& where, std::string_view line, TrackPoint& point
   point.lon_deg = parse_longitude(where, "GPS", line.substr(first, comma - first));
   const std::size_t second = line.find_first_not_of(' ', comma + 1);
   point.lat_deg = parse_latitude(where, "GPS", line.substr(second, end - second));
-  point.alt_m = parse_altitude(where, "BAROMETER", value_after(line, "BAROMETER"));
+  point.alt_m = parse_known(where, "BAROMETER", value_after(line, "BAROMETER"));
   return true;
 }
 
@@ -65,7 +65,7 @@ bool read_position(const std::string& where, std::string_view line, TrackPoint& 
   if (lat.empty() || lon.empty()) return read_gps(where, line, point);
   point.lat_deg = parse_latitude(where, "latitude", lat);
   point.lon_deg = parse_longitude(where, "longitude", lon);
-  point.alt_m = parse_altitude(where, "altitude", first_of(line, {"abs_alt", "altitude"}));
+  point.alt_m = parse_known(where, "altitude", first_of(line, {"abs_alt", "altitude"}));
   return true;
 }
 

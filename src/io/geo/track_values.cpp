@@ -42,7 +42,7 @@ double parse_longitude(const std::string& where, const std::string& name, std::s
   return parse_angle(where, name, text, 180);
 }
 
-double parse_altitude(const std::string& where, const std::string& name, std::string_view text) {
+double parse_known(const std::string& where, const std::string& name, std::string_view text) {
   if (is_unknown(text)) return std::numeric_limits<double>::quiet_NaN();
   return parse_number(where, name, text);
 }

@@ -1,9 +1,8 @@
 #include "io/report/cells.hpp"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 
+#include "core/shortest_text.hpp"
 #include "io/damage_colours.hpp"
 #include "io/drawing.hpp"
 #include "io/report/markup.hpp"
@@ -16,9 +15,7 @@ namespace {
 std::string key_attribute(const ReportCell& cell) {
   if (!cell.key) return "";
   if (!std::isfinite(*cell.key)) return " data-key=\"\"";
-  std::array<char, 32> digits{};
-  const auto* const end = std::to_chars(digits.data(), digits.data() + digits.size(), *cell.key).ptr;
-  return " data-key=\"" + std::string(digits.data(), static_cast<std::size_t>(end - digits.data())) + "\"";
+  return " data-key=\"" + shortest_text(*cell.key) + "\"";
 }
 
 }  // namespace

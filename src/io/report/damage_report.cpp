@@ -14,7 +14,6 @@
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/damage_overlay.hpp"
 #include "roadstereo/io/flight_pictures.hpp"
-#include "roadstereo/io/image_file.hpp"
 #include "roadstereo/version.hpp"
 
 namespace roadstereo::io {
@@ -35,7 +34,7 @@ void validate(const DamageReportInput& input) {
 
 cv::Mat background_of(const DamageReportInput& input) {
   validate(input);
-  if (input.left.data != nullptr) return to_bgr(input.left, find_white_level(input.left, input.left));
+  if (input.left.data != nullptr) return to_bgr(input.left, input.white_level);
   const ImageView<const float> map = input.transformed;
   if (map.empty()) return colour_pixels(input.map.depth, percentile_scale(input.map.depth, ""));
   const std::vector<double> road = percentiles(input.map.surface, {50});
@@ -58,7 +57,7 @@ std::string sheet_figure(const DamageReportInput& input) {
 std::string overlay_figure(const DamageReportInput& input) {
   constexpr PictureLimit limit{1400, 600000};
   if (input.map.damages.empty()) return "";
-  const Frame overlay = damage_overlay(damage_background(input).view(), input.map);
+  const Frame overlay = damage_overlay(damage_background(input).view(), 0, input.map);
   return figure("overlay", "Overlay", picture_uri(mat_over(overlay.view()), limit),
                 input.map.metric
                     ? "Every damage with its id and maximum depth, coloured by severity; +: above the road."

@@ -1,12 +1,11 @@
 #include "io/report/relief_view.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
+#include "core/shortest_text.hpp"
 #include "io/report/markup.hpp"
 #include "io/report/templates.hpp"
 
@@ -50,11 +49,6 @@ std::string in_bits(const Image<std::uint8_t>& mask) {
   return base64(bytes);
 }
 
-std::string number(double value) {
-  std::array<char, 32> digits{};
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
-}
-
 }  // namespace
 
 std::string relief_html(const Relief& relief, const std::string& id, double max_depth) {
@@ -63,13 +57,13 @@ std::string relief_html(const Relief& relief, const std::string& id, double max_
                                   {"columns", std::to_string(relief.depth.width())},
                                   {"rows", std::to_string(relief.depth.height())},
                                   {"unit", relief.metric ? "m" : "px"},
-                                  {"max_depth", number(max_depth)},
+                                  {"max_depth", shortest_text(max_depth)},
                                   {"x", x.text},
-                                  {"x_step", number(x.step)},
+                                  {"x_step", shortest_text(x.step)},
                                   {"y", y.text},
-                                  {"y_step", number(y.step)},
+                                  {"y_step", shortest_text(y.step)},
                                   {"depth", depth.text},
-                                  {"depth_step", number(depth.step)},
+                                  {"depth_step", shortest_text(depth.step)},
                                   {"measured", in_bits(relief.measured)}});
 }
 

@@ -29,9 +29,7 @@ std::uint64_t nanoseconds(double time_s) {
 std::vector<std::uint8_t> jpeg_of(const FrameView& left, double white_level) {
   constexpr int quality = 90;
   if (left.sample == SampleType::u8) return encode_jpeg(left, quality, left.width);
-  constexpr double largest = 65535;
-  const cv::Mat picture = to_bgr(left, white_level > 0 ? white_level : largest);
-  return encode_jpeg(frame_from(picture, ChannelOrder::bgr).view(), quality, left.width);
+  return encode_jpeg(frame_from(to_bgr(left, white_level), ChannelOrder::bgr).view(), quality, left.width);
 }
 
 /// From the road to the camera: the axes are the columns.

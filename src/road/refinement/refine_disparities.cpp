@@ -10,7 +10,7 @@
 #include "road/refinement/band_slopes.hpp"
 #include "road/refinement/refinement_maps.hpp"
 #include "road/refinement/settings.hpp"
-#include "road/refinement/smoothing_error.hpp"
+#include "road/refinement/smoothing_bias.hpp"
 #include "road/refinement/weighted_mean.hpp"
 #include "road/row_shift.hpp"
 #include "roadstereo/refinement.hpp"
@@ -82,7 +82,7 @@ void add_smoothing_error(ImageView<const float> disparity, int reach, int thread
       const float* const here = disparity.row(v);
       float* const error = sigma.row(v);
       for (int u = reach; u < width - reach; ++u) {
-        error[u] = with_smoothing_error(error[u], here[u], here[u - reach] + here[u + reach], above[u] + below[u]);
+        error[u] = with_smoothing_bias(error[u], here[u], here[u - reach] + here[u + reach], above[u] + below[u]);
       }
     }
   });

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
@@ -222,6 +223,24 @@ struct PicturesOfDamage {
   DamageReportInput pictures{map};
 };
 
+/// 12 bits in 16: samples of 468 are 468 · 255 / 4095 = 29, whatever else is in the frame. JPEG rounds.
+TEST(FlightPictures, WhiteIsThatOfProcessing) {
+  const Damage damage = pothole(30, 24);
+  const DamageMap map = make_empty_damage_map(64, 48, "");
+  for (const unsigned brightest : {468U, 1100U}) {
+    Frame left{std::vector<std::uint8_t>(std::size_t{2} * 64 * 48), 64, 48, SampleType::u16};
+    for (std::size_t i = 0; i < left.bytes.size(); i += 2) {
+      const unsigned sample = i == 0 ? brightest : 468U;
+      left.bytes[i] = static_cast<std::uint8_t>(sample & 255U);
+      left.bytes[i + 1] = static_cast<std::uint8_t>(sample >> 8U);
+    }
+    for (const std::vector<std::uint8_t>& jpeg :
+         {frame_thumbnail(left.view(), 4095, map), damage_picture(left.view(), 4095, map, damage)}) {
+      EXPECT_NEAR(cv::mean(cv::imdecode(jpeg, cv::IMREAD_GRAYSCALE))[0], 29, 2) << brightest;
+    }
+  }
+}
+
 TEST(FlightReport, IsCompleteAndSelfContained) {
   Damage damage = pothole(30, 24);
   const PicturesOfDamage frame(damage);
@@ -232,7 +251,7 @@ TEST(FlightReport, IsCompleteAndSelfContained) {
   input.notices = {"1 of 3 frames have no result"};
   input.curves = {{0, 1, 2}, true, {1, FlightFrame::unknown, 2}, {3, 3, 3}, {0.1, 0.2, 0.1}};
   input.inspected = 3;
-  input.thumbnails = {{"first", frame_thumbnail(frame.left.view(), frame.map)}};
+  input.thumbnails = {{"first", frame_thumbnail(frame.left.view(), 0, frame.map)}};
   input.damages.resize(1);
   RoadDamage& known = input.damages[0].damage;
   known.id = 7;

@@ -517,6 +517,16 @@ TEST_F(TrackFile, ReadsPositionsOfPx4) {
   EXPECT_DOUBLE_EQ(new_units[1].alt_m, 520.225);
 }
 
+TEST_F(TrackFile, UnknownNumbersOfPx4AreNone) {
+  const std::vector<TrackPoint> read = points(
+      "timestamp,time_utc_usec,latitude_deg,longitude_deg,altitude_msl_m,eph,epv\n"
+      "2000,1714564800000000,48.1371,11.5754,nan,nan,NaN\n3000,1714564800200000,48.1372,11.5755,520.225,1.5,\n");
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_TRUE(std::isnan(read[0].alt_m) && std::isnan(read[0].horizontal_sd_m) && std::isnan(read[0].vertical_sd_m));
+  EXPECT_EQ(read[1].horizontal_sd_m, 1.5);
+  EXPECT_TRUE(std::isnan(read[1].vertical_sd_m));
+}
+
 TEST_F(TrackFile, RejectsBadCsv) {
   expect_refused(replaced(csv, "50.0001", "-90.1"), "line 3: lat is -90.1; it must be between -90 and 90 degrees");
   expect_refused(replaced(csv, "8.0002", "200"), "line 4: lon is 200; it must be between -180 and 180 degrees");

@@ -9,7 +9,7 @@
 #include "road/refinement/cuda/measured_maps.hpp"
 #include "road/refinement/cuda/refinement.hpp"
 #include "road/refinement/cuda/slopes.hpp"
-#include "road/refinement/smoothing_error.hpp"
+#include "road/refinement/smoothing_bias.hpp"
 
 namespace roadstereo::cuda {
 namespace {
@@ -156,7 +156,7 @@ __global__ void add_smoothing_error(ImageView<const float> disparity, int reach,
   if (u >= disparity.width() - reach || v >= disparity.height() - reach) return;
   const float two_across = __ldg(&disparity(u - reach, v)) + __ldg(&disparity(u + reach, v));
   const float two_down = __ldg(&disparity(u, v - reach)) + __ldg(&disparity(u, v + reach));
-  sigma(u, v) = with_smoothing_error(sigma(u, v), __ldg(&disparity(u, v)), two_across, two_down);
+  sigma(u, v) = with_smoothing_bias(sigma(u, v), __ldg(&disparity(u, v)), two_across, two_down);
 }
 
 std::size_t tile_bytes(int rows, int border) {
