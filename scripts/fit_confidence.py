@@ -31,16 +31,27 @@ def gentle_share(region):
     return half_share**2 / (region["rut_significance"]**2 + half_share**2)
 
 
-def surface_log_odds(significance, slope, gentle):
+def even_surface_significance(windows):
+    of_chosen_disparities, of_one_window = 0.6, 1.85
+    return of_chosen_disparities + (of_one_window - of_chosen_disparities) / math.sqrt(windows)
+
+
+def surface_log_odds(region):
     """As in src/damage/evidence.cpp; it is not fitted."""
-    per_standard_error, even_odds, max_of_protrusion = 4.7, 1.85, 0.5
+    per_standard_error, max_of_protrusion = 4.7, 0.5
     per_standard_error_of_hollow, max_standard_errors = 1, 2
+    significance, slope = region["surface_significance"], region["likely_wall_slope"]
     if significance is None:
         return 0.0
-    above = significance - even_odds
-    if slope is None or above < 0:
+    contrast = region["contrast_sigmas"]
+    windows = (region["significance"] / contrast)**2 if contrast > 0 else 1
+    lacking = significance - even_surface_significance(windows)
+    if lacking < 0:
+        return per_standard_error * math.sqrt(windows) * lacking
+    above = max(0, significance - even_surface_significance(1))
+    if slope is None:
         return min(max_of_protrusion, per_standard_error * above)
-    slope_log_odds = gentle * min(above, 1) * min(0, log_steepness(slope))
+    slope_log_odds = gentle_share(region) * min(above, 1) * min(0, log_steepness(slope))
     return per_standard_error_of_hollow * min(above, max_standard_errors) + slope_log_odds
 
 
@@ -120,7 +131,7 @@ def main():
     sources, rows = read(sys.argv[1:])
     x = np.array([features(row) for row in rows])
     y = np.array([float(row["is_damage"]) for row in rows])
-    offset = np.array([surface_log_odds(row["surface_significance"], row["likely_wall_slope"], gentle_share(row)) +
+    offset = np.array([surface_log_odds(row) +
                        range_log_odds(row["range_vote"]) + specular_log_odds(row["specular_excess"]) +
                        texture_log_odds(row["texture_share"]) + clutter_log_odds(row["clutter"]) +
                        pixel_log_odds(row["pixel_significance"]) for row in rows])

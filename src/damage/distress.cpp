@@ -16,6 +16,7 @@ constexpr double min_elongation = 3;      // of ruts and cracks
 constexpr double min_pothole_m = 0.1;     // diameter, ASTM D6433: narrower long damages are cracks
 constexpr double min_step_m = 0.025;      // ASTM D6433, lane/shoulder drop-off
 constexpr double min_kerb_m = 0.75;       // ASTM D6433, potholes count by number up to that: what the side cuts of one
+constexpr double min_object_slope = 1;    // stones and branches have sides of 45° and more, bumps and heaves have not
 constexpr double max_object_m = 1.5;      // twice 0.75 m: no pothole is as long, no object on the road as wide
 constexpr double min_rut_sigmas = 7;      // half of a region in a rut of the fewest, 14
 constexpr double max_oblique_rad = std::numbers::pi / 6;  // from the direction of the road
@@ -62,7 +63,7 @@ Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, d
   const bool gentle = possible_slope < max_gentle_slope;
   if (!gentle && is_kerb_step(metrics, mount_yaw_deg, at_side)) return Distress::kerb_step;
   if (damage.kind == DamageKind::protrusion) {
-    const bool object = metrics.wall_slope > max_gentle_slope && metrics.diameter_m <= max_object_m;
+    const bool object = possible_slope > min_object_slope && metrics.diameter_m <= max_object_m;
     return object ? Distress::debris : Distress::bump;
   }
   const bool long_one = elongation(metrics) >= min_elongation;

@@ -14,17 +14,27 @@ double log_steepness(double slope) {
   return std::log(std::clamp(slope, min_slope, 1.0) / even_slope);
 }
 
-/// Log-odds of damage against artefacts that only one camera sees. For a protrusion, whose slope is unknown, agreement
-/// of the images adds little: it proves a surface, but objects on the road or beside it have one, too. A hollow with a
-/// wall that the images confirm is almost always damage; a gentle one may be relief of the road. Fitted to regions of
-/// rendered roads with rain, snow and dead pixels, and to hollows put into streets (docs/method.md). `gentle`: share to
-/// which gentle walls count. A map alone, whose pictures are unknown, has none.
-double surface_log_odds(double significance, double slope, double gentle) {
-  constexpr double per_standard_error = 4.7, even_odds = 1.85, max_of_protrusion = 0.5;
+/// Significance of the surface at which damage and artefacts that only one camera sees are equally likely, for a region
+/// of `windows` independent windows. Of artefacts it is 0.6 in the median, since their disparities were chosen for the
+/// agreement that is measured here; but they seldom cover more than a few windows.
+double even_surface_significance(double windows) {
+  constexpr double of_chosen_disparities = 0.6, of_one_window = 1.85;
+  return of_chosen_disparities + (of_one_window - of_chosen_disparities) / std::sqrt(windows);
+}
+
+/// Log-odds of damage against these artefacts. For a protrusion, whose slope is unknown, agreement of the images adds
+/// little: it proves a surface, but objects on the road or beside it have one, too. A hollow with a wall that the
+/// images confirm is almost always damage; a gentle one may be relief of the road. Fitted to regions of rendered roads
+/// with rain, snow and dead pixels, and to hollows put into streets (docs/method.md). `gentle`: share to which gentle
+/// walls count. A map alone, whose pictures are unknown, has none.
+double surface_log_odds(double significance, double windows, double slope, double gentle) {
+  constexpr double per_standard_error = 4.7, max_of_protrusion = 0.5;  // of one window
   constexpr double per_standard_error_of_hollow = 1, max_standard_errors = 2;
   if (std::isnan(significance)) return 0;
-  const double above = significance - even_odds;
-  if (std::isnan(slope) || above < 0) return std::min(max_of_protrusion, per_standard_error * above);
+  const double lacking = significance - even_surface_significance(windows);
+  if (lacking < 0) return per_standard_error * std::sqrt(windows) * lacking;
+  const double above = std::max(0.0, significance - even_surface_significance(1));
+  if (std::isnan(slope)) return std::min(max_of_protrusion, per_standard_error * above);
   return per_standard_error_of_hollow * std::min(above, max_standard_errors) +
          gentle * std::min(above, 1.0) * std::min(0.0, log_steepness(slope));
 }
@@ -107,7 +117,8 @@ double DamageEvidence::confidence() const {
   const double log_odds = intercept + per_log_significance * std::log(std::clamp(significance, 1.0, max_significance)) +
                           per_road_share * road_share + per_unseen_share * unseen_share;
   const double gentle = 1 - rut_share(rut_significance);
-  return probability_of(log_odds + surface_log_odds(surface_significance, likely_wall_slope, gentle) +
+  const double windows = contrast_sigmas > 0 ? std::pow(significance / contrast_sigmas, 2) : 1;
+  return probability_of(log_odds + surface_log_odds(surface_significance, windows, likely_wall_slope, gentle) +
                         gentle * (wall_log_odds(border_share, likely_wall_slope) + extent_log_odds(extent)) +
                         range_log_odds(range_vote) + pixel_log_odds(pixel_significance) +
                         specular_log_odds(specular_excess) + texture_log_odds(texture_share) +

@@ -102,6 +102,7 @@ TEST(Distress, FollowsShape) {
       {Distress::depression, [](double x, double y) { return frustum(std::hypot(x / 5, y), 0.012, 0, 0.09); }},
       {Distress::crack, [](double x, double y) { return frustum(std::hypot(x / 9, y), 0.05, 0.02, 0.03); }},
       {Distress::bump, [](double x, double y) { return -frustum(std::hypot(x, y), 0.03, 0, 0.3); }},
+      {Distress::bump, [](double x, double y) { return -frustum(std::hypot(x, y), 0.09, 0, 0.3); }},  // 17°
       {Distress::debris, [](double x, double y) { return -frustum(std::hypot(x, y), 0.06, 0.08, 0.1); }},
       {Distress::kerb_step, [](double x, double) { return -frustum(std::max(0.0, 0.64 - x), 0.08, 0.14, 0.16); }},
   };
@@ -116,7 +117,7 @@ TEST(Distress, FollowsShape) {
 /// Steep ones of 200 mm and more: what is three times as long as wide and longer than 1.5 m is no pothole, what is
 /// wider than that is no object on the road.
 TEST(Distress, FollowsSize) {
-  constexpr double steep = 0.5, along_road = std::numbers::pi / 2;
+  constexpr double steep = 0.5, upright = 2, along_road = std::numbers::pi / 2;
   const auto distress = [](DamageKind kind, double length_m, double width_m, double angle_rad,
                            double mount_yaw_deg = 0) {
     DamageMetrics metrics;
@@ -128,7 +129,7 @@ TEST(Distress, FollowsSize) {
     metrics.wall_slope = steep;
     Damage damage;
     damage.kind = kind;
-    return classify_distress(damage, metrics, mount_yaw_deg, steep, false);
+    return classify_distress(damage, metrics, mount_yaw_deg, upright, false);
   };
   EXPECT_EQ(distress(DamageKind::depression, 2.4, 0.45, along_road), Distress::rut);
   EXPECT_EQ(distress(DamageKind::depression, 2.4, 0.45, 0), Distress::pothole) << "across the road";

@@ -42,6 +42,7 @@ nlohmann::ordered_json regions_json(const std::vector<FoundRegion>& regions) {
                     {"kind", name_of(region.damage.kind)},
                     {"pixels", region.damage.pixels},
                     {"significance", number(evidence.significance)},
+                    {"contrast_sigmas", number(evidence.contrast_sigmas)},
                     {"road_share", number(evidence.road_share)},
                     {"border_share", number(evidence.border_share)},
                     {"unseen_share", number(evidence.unseen_share)},
