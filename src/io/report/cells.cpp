@@ -32,6 +32,10 @@ ReportCell plain_cell(double value) {
   return {escaped(value_text(value, "")), value};
 }
 
+ReportCell plain_cell(const Damage& damage, double size) {
+  return {escaped(bound_text(damage.cut_by_border, value_text(size, ""))), size};
+}
+
 ReportCell fixed_cell(double value, int decimals) {
   return {std::isfinite(value) ? number_text(value, decimals) : "", value};
 }

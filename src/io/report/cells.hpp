@@ -20,6 +20,8 @@ ReportCell measured_cell(const Measurement& measured);
 ReportCell measured_cell(const Damage& damage, const Measurement& size);
 /// Shows a value with three significant digits.
 ReportCell plain_cell(double value);
+/// Shows a length or a width; with "≥" if the border cuts the damage.
+ReportCell plain_cell(const Damage& damage, double size);
 ReportCell fixed_cell(double value, int decimals);
 ReportCell severity_cell(const Damage& damage);
 /// Shows the distress, or without a calibration the side of the road.

@@ -30,8 +30,8 @@ std::vector<Column> metric_columns() {
           {"Area", "m²", [](const D& d) { return measured_cell(d, d.metrics->area_m2); }},
           {"Confidence", "%", [](const D& d) { return fixed_cell(100 * d.confidence, 0); }},
           {"Volume", "L", [](const D& d) { return measured_cell(d, scaled(d.metrics->volume_m3, litres)); }},
-          {"Length", "m", [](const D& d) { return plain_cell(d.metrics->length_m); }},
-          {"Width", "m", [](const D& d) { return plain_cell(d.metrics->width_m); }},
+          {"Length", "m", [](const D& d) { return plain_cell(d, d.metrics->length_m); }},
+          {"Width", "m", [](const D& d) { return plain_cell(d, d.metrics->width_m); }},
           {"Distance", "m", [](const D& d) { return fixed_cell(d.metrics->distance_m, 2); }}};
 }
 
