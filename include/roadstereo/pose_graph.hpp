@@ -60,7 +60,8 @@ struct PoseGraphOptions {
   double time_offset_sd_s = 10;  ///< standard deviation of the expected time offset, 0.001 … 600; 0 is taken if it fits
                                  ///< and the data do not tell another one twice as well, or no other than clocks have
                                  ///< that run together (0.05 s)
-  double lever_arm_sd_m = 1;      ///< expected distance of the antenna from the camera, per axis, 0.001 … 100
+  double lever_arm_sd_m = 1;  ///< expected distance of the antenna from the camera, per axis, 0.001 … 100; an axis
+                              ///< that the data do not tell twice as well is 0
   double fix_correlation_s = 10;  ///< within this time the noise of fixes is the same, 0 … 3600
   double max_fix_gap_s = 5;       ///< no position between fixes, or frames, farther apart in time, 0.001 … 3600
 

@@ -60,10 +60,10 @@ class Optimiser {
         problem = solve(taken);
       }
       time_offset_found_ = finds_time_offset(*problem);
-      if (!time_offset_found_) {
-        track_.time_offset_s = aligned_offset_s_;
-        problem = solve(taken);
-      }
+      if (!time_offset_found_) track_.time_offset_s = aligned_offset_s_;
+      unknown_lever_axes_ = unknown_lever_axes(*problem);
+      for (const int axis : unknown_lever_axes_) track_.lever_arm[axis] = 0;
+      if (!time_offset_found_ || !unknown_lever_axes_.empty()) problem = solve(taken);
     }
     if (!taken.empty()) {
       taken = agreeing(*problem);
@@ -201,6 +201,18 @@ class Optimiser {
     }
     problem.add_track_prior(error_sd, options_.lever_arm_sd_m, options_.time_offset_sd_s, options_.max_time_offset_s);
     if (!time_offset_found_) problem.hold_time_offset();
+    problem.hold_lever_arm(unknown_lever_axes_);
+  }
+
+  /// Axes along which the track does not tell the lever arm twice as well as it was known before: a straight flight has
+  /// one that looks like a shift.
+  std::vector<int> unknown_lever_axes(PoseGraphProblem& problem) const {
+    const Eigen::Vector4d deviations = problem.track_deviations();
+    std::vector<int> axes;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (2 * deviations[axis] >= options_.lever_arm_sd_m) axes.push_back(axis);
+    }
+    return axes;
   }
 
   /// Whether the track tells the time offset: at least twice as well as it was known before, and, where the expected
@@ -336,9 +348,10 @@ class Optimiser {
   std::vector<PoseCurve> pieces_;       ///< anchored ones, before the last solution
   std::vector<TrackObservation> observations_;
   TrackUnknowns track_;
-  double aligned_offset_s_ = 0;    ///< 0 unless the alignment needs another one
-  bool time_offset_found_ = true;  ///< false: held
-  double noise_m_ = 0;             ///< of the fixes, per axis
+  double aligned_offset_s_ = 0;          ///< 0 unless the alignment needs another one
+  bool time_offset_found_ = true;        ///< false: held
+  std::vector<int> unknown_lever_axes_;  ///< held at 0
+  double noise_m_ = 0;                   ///< of the fixes, per axis
   double link_variance_factor_ = 1;
   PoseGraphResult result_;
 };

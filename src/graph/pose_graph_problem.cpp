@@ -91,6 +91,13 @@ void PoseGraphProblem::hold_time_offset() {
   problem_.SetParameterBlockConstant(&track_.time_offset_s);
 }
 
+void PoseGraphProblem::hold_lever_arm(const std::vector<int>& axes) {
+  if (axes.empty()) return;
+  double* const lever_arm = track_.lever_arm.data();
+  if (axes.size() == 3) return problem_.SetParameterBlockConstant(lever_arm);
+  problem_.SetManifold(lever_arm, new ceres::SubsetManifold(3, axes));
+}
+
 void PoseGraphProblem::solve() {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
@@ -120,6 +127,8 @@ void PoseGraphProblem::linearise() {
   if (problem_.HasParameterBlock(track_.lever_arm.data())) {
     track_column_ = column;
     problem_.SetParameterBlockVariable(&track_.time_offset_s);
+    problem_.SetParameterBlockVariable(track_.lever_arm.data());
+    problem_.SetManifold(track_.lever_arm.data(), nullptr);
     options.parameter_blocks.insert(options.parameter_blocks.end(),
                                     {track_.lever_arm.data(), &track_.time_offset_s, track_.fix_error.data()});
   }

@@ -36,10 +36,12 @@ class PoseGraphProblem {
   void hold(std::size_t frame);
   /// Leaves the time offset as it is in `solve`; its uncertainty remains.
   void hold_time_offset();
+  /// The same for the lever arm along these axes of the camera.
+  void hold_lever_arm(const std::vector<int>& axes);
 
   void solve();
 
-  /// Linearises the problem where it stands; a time offset that was held is free then.
+  /// Linearises the problem where it stands; a time offset and axes that were held are free then.
   void linearise();
   /// Covariance of a pose: translation, then rotation vector, in the axes of its camera. After `linearise`.
   Eigen::Matrix<double, 6, 6> covariance(std::size_t frame);

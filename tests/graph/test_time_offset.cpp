@@ -68,6 +68,10 @@ TEST(TimeOffset, IsUnknownOnStraightAtConstantSpeed) {
     EXPECT_FALSE(result.track->time_offset_found) << seed;
     EXPECT_EQ(result.track->time_offset_s.value, 0) << seed;
     EXPECT_NEAR(result.track->time_offset_s.std_error, 10, 0.1) << seed;  // as expected before: time_offset_sd_s
+    for (const Measurement& axis : result.track->lever_arm_m) {
+      EXPECT_EQ(axis.value, 0) << seed;
+      EXPECT_NEAR(axis.std_error, 1, 0.05) << seed;  // likewise: lever_arm_sd_m
+    }
     // 20 fixes of 1 m: the mean is 0.22 m off.
     EXPECT_NEAR(result.trajectory.frames[100].camera_to_world[3], at_constant_speed(10), 4 * 0.22) << seed;
   }

@@ -73,8 +73,9 @@ void FlightPositions::place(std::span<const CameraPlace> places) {
   for (std::size_t i = 0; i < frames_.size(); ++i) place_by_track(i);
   place_by_trajectory(places);
   set_stations(!places.empty());
-  for (std::size_t i = 0; i < frames_.size(); ++i)
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
     frames_[i].footprint_deg = on_earth(grounds_[i].footprint_m, grounds_[i].foot);
+  }
   for (io::GeoSighting& sighting : sightings_) {
     sighting.position = position_of(sighting.damage, grounds_[at_or_after(sighting.frame)].foot);
   }
@@ -113,6 +114,7 @@ void FlightPositions::set_stations(bool by_trajectory) {
   constexpr double min_step_m = 0.5;
   std::optional<io::GeoPosition> last;
   double last_station_m = 0, station_m = 0;
+  located_ = 0;
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     io::GeoFrame& frame = frames_[i];
     if (!frame.position) continue;
