@@ -148,7 +148,7 @@ struct DamageEvidence {
   double depth_significance = 0;
   bool is_depth_resolved() const { return depth_significance >= min_resolved_sigmas; }
 
-  /// Probability that the region is damage, 0 … 1: logistic regression on the evidence (docs/method.md).
+  /// Probability that the region is damage, 0 … 1: logistic regression on the evidence (docs/damage.md).
   double confidence() const;
 };
 

@@ -25,7 +25,7 @@ double even_surface_significance(double windows) {
 /// Log-odds of damage against these artefacts. For a protrusion, whose slope is unknown, agreement of the images adds
 /// little: it proves a surface, but objects on the road or beside it have one, too. A hollow with a wall that the
 /// images confirm is almost always damage; a gentle one may be relief of the road. Fitted to regions of rendered roads
-/// with rain, snow and dead pixels, and to hollows put into streets (docs/method.md). `gentle`: share to which gentle
+/// with rain, snow and dead pixels, and to hollows put into streets (docs/damage.md). `gentle`: share to which gentle
 /// walls count. A map alone, whose pictures are unknown, has none.
 double surface_log_odds(double significance, double windows, double slope, double gentle) {
   constexpr double per_standard_error = 4.7, max_of_protrusion = 0.5;  // of one window
@@ -108,7 +108,7 @@ double rut_share(double significance) {
 }  // namespace
 
 double DamageEvidence::confidence() const {
-  // Fitted to labelled maps, labelled pairs, rendered roads and drives over intact roads (docs/method.md, Damage).
+  // Fitted to labelled maps, labelled pairs, rendered roads and drives over intact roads (docs/damage.md, Confidence).
   constexpr double intercept = -9.8;
   constexpr double per_log_significance = 2.15;
   constexpr double per_road_share = 4.4;

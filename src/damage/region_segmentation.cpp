@@ -10,7 +10,7 @@ namespace roadstereo {
 namespace {
 
 // `_sigmas` are standard deviations of a cell of the intact road. Chosen on synthetic roads and on the labelled pothole
-// maps (docs/method.md, Damage).
+// maps (docs/damage.md, Regions).
 constexpr float min_level_sigmas = 2;        ///< minimum depth at the outline
 constexpr float foot_sigmas = 0.5F;          ///< minimum depth at the foot of the wall
 constexpr int max_level_attempts = 8;        ///< maximum number of levels to separate touching damages

@@ -9,7 +9,7 @@ namespace roadstereo {
 /// of its depth. The shares were measured on synthetic roads (docs/damage_accuracy.md). It is the same in every frame.
 class SmoothingError {
  public:
-  /// As far as matching's block and window reach over a rim, some 10 pixels in `default` (docs/method.md).
+  /// As far as matching's block and window reach over a rim, some 10 pixels in `default` (docs/damage.md).
   static constexpr int window_radius_px = 10;
 
   explicit SmoothingError(double pixels) {

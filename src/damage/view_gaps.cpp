@@ -8,7 +8,7 @@ namespace roadstereo {
 namespace {
 
 // Gaps that belong to a depression: occluded or dark walls. Chosen on synthetic roads and on the labelled pothole maps
-// (docs/method.md, Damage).
+// (docs/damage.md, Regions).
 constexpr float gap_depth_share = 0.5F;  ///< of the minimum depth of a core, from which a neighbour of the gap is deep
 constexpr double min_deep_gap_share = 0.35;  ///< of the neighbours of an enclosed gap that must be deep
 constexpr double min_deep_cut_share = 0.6;   ///< of those of a gap that the border of the image, not the view, cuts
