@@ -75,6 +75,22 @@ TEST(Playback, NextRoundFollowsLastPair) {
   EXPECT_NEAR(seconds_between(start, playback.due(pair_at(1, 100.25), start)), 0.75, 1e-6);
 }
 
+/// A damaged message of a bag has no time. The pairs around it keep theirs.
+TEST(Playback, RejectedPairsWithoutTimeAreDueAtOnce) {
+  Playback playback(0);
+  const Clock::time_point start{};
+  const auto rejected = [](std::int64_t index) {
+    io::SourcePair pair = pair_at(index);
+    pair.error = "damaged";
+    return pair;
+  };
+  EXPECT_EQ(playback.due(rejected(0), start), start);
+  EXPECT_EQ(playback.due(pair_at(1, 500), start + 1s), start + 1s);
+  EXPECT_EQ(playback.due(rejected(2), start + 1s), start + 1s) << "nothing tells the interval yet";
+  EXPECT_NEAR(seconds_between(start, playback.due(pair_at(3, 500.5), start + 1s)), 1.5, 1e-6);
+  EXPECT_NEAR(seconds_between(start, playback.due(rejected(4), start + 1s)), 1.75, 1e-6);
+}
+
 TEST(Playback, NeedsTimesOrRate) {
   Playback playback(0);
   EXPECT_THROW(playback.due(pair_at(0), Clock::now()), Error);

@@ -16,8 +16,8 @@ class Playback {
     if (rate_hz > 0) interval_s_ = 1 / rate_hz;
   }
 
-  /// Returns when the pair is due. The first pair is due now; the schedule restarts if times decrease. Throws Error if
-  /// there is neither a rate nor a time.
+  /// Returns when the pair is due. The first pair is due now, and so is a rejected one whose time nothing tells; the
+  /// schedule restarts if times decrease. Throws Error if there is neither a rate nor a time.
   Clock::time_point due(const io::SourcePair& pair, Clock::time_point now);
 
   /// Returns the number of pairs to skip: those due before the newest pair that is already due.
