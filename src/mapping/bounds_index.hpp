@@ -1,26 +1,33 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <map>
 #include <vector>
 
+#include "core/box_index.hpp"
 #include "mapping/footprints.hpp"
 
 namespace roadstereo {
 
-/// Finds boxes of the map by the blocks of cells that they touch, so that a search needs not go through all of them.
+/// Finds boxes of the map by the blocks of 64 × 64 cells that they touch.
 class BoundsIndex {
  public:
-  /// Adds a box of finding `number`, which may have several. One without cells is left out.
-  void add(std::size_t number, const CellBounds& bounds);
+  /// Adds a box of finding `number`, which may have several.
+  void add(std::size_t number, const CellBounds& bounds) {
+    blocks_.add(number, block_of(bounds.first), block_of(bounds.last));
+  }
 
   /// Numbers with a box that overlaps this one, and some that are near, in ascending order.
-  std::vector<std::size_t> near(const CellBounds& bounds) const;
+  std::vector<std::size_t> near(const CellBounds& bounds) const {
+    return blocks_.near(block_of(bounds.first), block_of(bounds.last));
+  }
 
  private:
-  std::map<std::array<std::int32_t, 2>, std::vector<std::size_t>> blocks_;  ///< numbers that touch each
-  std::vector<std::size_t> large_;                                          ///< numbers that touch too many blocks
+  static std::array<std::int32_t, 2> block_of(const std::array<std::int32_t, 2>& cell) {
+    constexpr int block_bits = 6;
+    return {cell[0] >> block_bits, cell[1] >> block_bits};
+  }
+
+  BoxIndex<std::size_t, 2> blocks_;
 };
 
 }  // namespace roadstereo
