@@ -11,13 +11,13 @@
 #include "odometry/alignment_equations.hpp"
 #include "odometry/alignment_weights.hpp"
 #include "odometry/anderson_acceleration.hpp"
+#include "odometry/normal_equations.hpp"
 #include "odometry/patch_matching.hpp"
 
 namespace roadstereo {
 namespace {
 
 constexpr std::size_t min_points = 50;
-constexpr double smallest = 1e-12;            // of a diagonal element: rounding
 constexpr double unknown_offset_sd_px = 0.5;  // of the offset of a rig of which nothing is known
 // Of what nothing is known, when the rig is examined: offsets in pixels, the shutter by the time between both frames.
 constexpr double any_offset_sd_px = 10, any_shutter_sd = 10;
@@ -27,38 +27,6 @@ struct Spread {
   double offset_px = 0;
   double growth_px = 0;
   double shutter = 0;
-};
-
-struct NormalEquations {
-  Matrix<unknowns> matrix{};
-  Vector<unknowns> right{};
-
-  /// Adds sums of `add_products`.
-  void add(const Matrix<unknowns + 1>& products) {
-    for (std::size_t i = 0; i < unknowns; ++i) {
-      right[i] -= products[unknowns][i];
-      for (std::size_t j = 0; j <= i; ++j) matrix[i][j] += products[i][j];
-    }
-  }
-
-  /// An unknown is expected to be `excess` smaller, with a standard deviation; 0: it stays as it is.
-  void expect(std::size_t index, double excess, double sd) {
-    if (sd > 0) {
-      matrix[index][index] += 1 / (sd * sd);
-      right[index] -= excess / (sd * sd);
-      return;
-    }
-    for (std::size_t j = 0; j < index; ++j) matrix[index][j] = 0;
-    for (std::size_t i = index + 1; i < unknowns; ++i) matrix[i][index] = 0;
-    matrix[index][index] = 1;
-    right[index] = 0;
-  }
-
-  Vector<unknowns> solved() const {
-    Matrix<unknowns> factor = matrix;
-    factor_in_place(factor, smallest);
-    return solve_factored(factor, right);
-  }
 };
 
 class Aligner {
@@ -251,8 +219,8 @@ class Aligner {
     add_expectation(growth_index, spread.growth_px);
     add_expectation(shutter_index, spread.shutter);
     Matrix<unknowns> factor = normal_equations(spread).matrix;
-    factor_in_place(factor, smallest);
-    factor_in_place(scatter, smallest);
+    factor_in_place(factor, NormalEquations::smallest);
+    factor_in_place(scatter, NormalEquations::smallest);
     Matrix<unknowns> covariance{};
     for (std::size_t j = 0; j < unknowns; ++j) {
       Vector<unknowns> column{};
