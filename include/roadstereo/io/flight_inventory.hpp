@@ -14,7 +14,7 @@
 #pragma GCC visibility push(default)
 namespace roadstereo::io {
 
-class OutlineUnion;
+class CutExtent;
 class PlaceIndex;
 
 /// One damage of the road, seen in one or several frames of a flight: the record behind every table, GIS layer and
@@ -114,17 +114,10 @@ class FlightInventory {
     Sighting last;
     std::optional<Place> best_place;  ///< in the best frame
     Agreement views;
-    Damage measured;           ///< in the best frame
-    double largest_cut = 0;    ///< area of the largest sighting that the border cuts, m², or pixels
-    int piece = 0;             ///< of the first sighting with a place
-    RigidTransform to_road{};  ///< from the axes of the first camera of the piece to the road of the first sighting
-    std::unique_ptr<OutlineUnion> covered;  ///< what the sightings cover there whose depths agree with the best one's
-    std::unique_ptr<OutlineUnion> largest;  ///< what the largest of these does
-    double largest_m2 = 0;                  ///< its measured area
-    Measurement depth;                      ///< maximum depth of the best sighting
+    Damage measured;                    ///< in the best frame
+    double largest_cut = 0;             ///< area of the largest sighting that the border cuts, m², or pixels
+    std::unique_ptr<CutExtent> extent;  ///< while the border cuts it in all frames
   };
-  static void cover(const FlightFrame& frame, const Sighting& now, Known& known);
-  static void extend(const FlightFrame& frame, const Sighting& now, bool is_best, Known& known, Damage& best);
 
   double min_confidence_;
   std::vector<RoadDamage> damages_;

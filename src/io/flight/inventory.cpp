@@ -6,8 +6,8 @@
 
 #include "core/log_odds.hpp"
 #include "core/order_statistics.hpp"
+#include "io/flight/cut_extent.hpp"
 #include "io/flight/outline_overlap.hpp"
-#include "io/flight/outline_union.hpp"
 #include "io/flight/place_index.hpp"
 #include "io/flight/standing.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
@@ -36,36 +36,6 @@ bool is_better(const Damage& one, const Damage& other, double largest_cut) {
     return std::tuple(damage.cut_by_border, splinter, damage.max_depth().std_error);
   };
   return rank(one) < rank(other);
-}
-
-/// Whether two depths are equal within three standard errors.
-bool agree_in_depth(const Measurement& one, const Measurement& other) {
-  constexpr double max_sigmas = 3;
-  return std::abs(one.value - other.value) <= max_sigmas * std::hypot(one.std_error, other.std_error);
-}
-
-/// Area of a damage of which the largest sighting shows `largest_m2`: that and what only others cover, but no more than
-/// the largest one goes on as wide as it is, since the outlines of many frames together are wider than each.
-double area_of(const OutlineUnion& covered, const OutlineUnion& largest, double largest_m2) {
-  const std::array<double, 2> axis = covered.axis();
-  const double by_area = largest_m2 + covered.area_m2() - largest.area_m2();
-  const double by_length = largest_m2 * covered.extent_m(axis) / largest.extent_m(axis);
-  return std::max(largest_m2, std::min(by_area, by_length));
-}
-
-/// Extends a measurement in one frame to an area that is larger by that factor, at least 1, and as deep.
-void enlarge(double growth, double length_m, DamageMetrics& metrics) {
-  for (Measurement* const measured : {&metrics.area_m2, &metrics.volume_m3}) {
-    *measured = {growth * measured->value, growth * measured->std_error};
-  }
-  metrics.diameter_m *= std::sqrt(growth);
-  metrics.length_m = std::max(metrics.length_m, length_m);
-  if (metrics.unit == DistressUnit::metre) {
-    metrics.quantity = metrics.length_m;
-  } else if (metrics.unit == DistressUnit::square_metre ||
-             metrics.quantity != 1) {  // a large pothole counts as several
-    metrics.quantity *= growth;
-  }
 }
 
 /// Overlap of two boxes after `box` is moved, as a fraction of the smaller one.
@@ -189,47 +159,6 @@ std::int64_t FlightInventory::seen_in_picture(const Sighting& now, const Ids& ta
   return best;
 }
 
-/// Adds what a sighting shows of a damage to what others do.
-void FlightInventory::cover(const FlightFrame& frame, const Sighting& now, Known& known) {
-  if (!known.covered) {
-    known.covered = std::make_unique<OutlineUnion>();
-    known.to_road = inverse(frame.pose->road_to_world);
-    known.piece = now.place->piece;
-  }
-  if (now.place->piece != known.piece) return;
-  Outline outline;
-  for (const auto& point : now.place->outline_m) {
-    const auto on_road = transform_point(known.to_road, point);
-    outline.push_back({on_road[0], on_road[1]});
-  }
-  known.covered->add(outline);
-  const double area_m2 = size_of(now.damage);
-  if (known.largest && area_m2 <= known.largest_m2) return;
-  known.largest = std::make_unique<OutlineUnion>();
-  known.largest->add(outline);
-  known.largest_m2 = area_m2;
-}
-
-/// Extends what one frame shows of a damage that the border cuts to what all have shown. Sightings whose depths differ
-/// from that of the best one are not of the same hollow and count no further.
-void FlightInventory::extend(const FlightFrame& frame, const Sighting& now, bool is_best, Known& known, Damage& best) {
-  if (!known.measured.cut_by_border || !known.measured.metrics) return;
-  const bool agrees = !known.covered || agree_in_depth(now.damage.max_depth(), known.depth);
-  if (is_best) {
-    known.depth = now.damage.max_depth();
-    if (!agrees) {
-      known.covered.reset();
-      known.largest.reset();
-    }
-  }
-  if (now.place && (is_best || agrees)) cover(frame, now, known);
-  const double in_frame_m2 = size_of(known.measured);
-  if (!known.largest || !(in_frame_m2 > 0)) return;
-  best = known.measured;
-  enlarge(std::max(1.0, area_of(*known.covered, *known.largest, known.largest_m2) / in_frame_m2),
-          known.covered->extent_m(known.covered->axis()), *best.metrics);
-}
-
 /// Whether a damage was seen a few frames ago, and the image has not jumped since.
 bool FlightInventory::is_recent(const Sighting& last) const {
   return last.sequence >= uncut_from_ && sequence_ - last.sequence <= max_gap + 1;
@@ -303,7 +232,7 @@ std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
     const bool is_new = now.id == 0;
     if (is_new) {
       RoadDamage& found = damages_.emplace_back();
-      known_.emplace_back();
+      known_.emplace_back().extent = std::make_unique<CutExtent>();
       now.id = static_cast<std::int64_t>(damages_.size());
       found.id = now.id;
       found.first_frame = frame.index;
@@ -324,7 +253,10 @@ std::vector<std::int64_t> FlightInventory::add(const FlightFrame& frame) {
       known.measured = damage;
       known.best_place = now.place;
     }
-    if (!candidate) extend(frame, now, is_best, known, on_road.best);
+    if (!candidate && known.measured.cut_by_border && known.measured.metrics) {
+      known.extent->add(damage, is_best, frame.pose, now.place ? now.place->outline_m : Place().outline_m);
+      on_road.best = known.extent->extended(known.measured);
+    }
     views.is_damage = views.is_damage || !candidate;
     add_confidence(damage.confidence, views);
     on_road.candidate = !views.is_damage || !agree(views, on_road.sightings);
