@@ -99,7 +99,7 @@ std::string add_map(const FlightSettings& settings, const FlightPlan& plan, cons
   MapPlan map;
   MapPass& pass = map.passes.emplace_back();
   pass.source = settings.source;
-  pass.source_options = plan.source;
+  pass.source_settings = settings.source_settings;
   pass.calibration = settings.calibration;
   pass.trajectory = (folder.path() / trajectory_file_names().front()).string();
   pass.from = settings.from;

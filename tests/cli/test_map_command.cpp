@@ -218,6 +218,9 @@ TEST_F(MapResume, InterruptedMapIsContinuedBitForBit) {
   ASSERT_TRUE(std::filesystem::exists(folder_ / "killed/.tiles/checkpoint.json"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "killed/map.json"));
   expect_complaint(run(command_ + "killed --resume --cell 0.05"), "--cell \"0\", not \"0.05\"");
+  expect_complaint(run(command_ + "killed --resume --rate 5"), "--rate of recording 0 \"0\", not \"5\"");
+  write("own.yaml", std::string("name: own\npothole:\n  unit: count\n  depth_mm: [10]\n  severity: [high]\n"));
+  expect_complaint(run(command_ + "killed --resume --severity own.yaml"), "content of the severities of recording 0");
   std::filesystem::copy(folder_ / "killed", folder_ / "broken", std::filesystem::copy_options::recursive);
   write("broken/.tiles/frames.jsonl", std::string("{"));
   expect_complaint(run(command_ + "broken --resume"), "is broken");

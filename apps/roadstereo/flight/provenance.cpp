@@ -22,18 +22,22 @@ std::string joined(const std::vector<std::string>& words) {
 
 }  // namespace
 
-std::string content_digest(const std::vector<std::string>& files) {
+std::string digest(std::string_view bytes) {
   constexpr std::uint64_t basis = 0xcbf29ce484222325ULL;
   constexpr std::uint64_t prime = 0x100000001b3ULL;
   std::uint64_t hash = basis;
+  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * prime;
+  return fmt::format("{:016x}", hash);
+}
+
+std::string content_digest(const std::vector<std::string>& files) {
+  std::string bytes;
   for (const std::string& name : files) {
     std::ifstream file(name, std::ios::binary);
     if (!file) fail(name, ": cannot be read");
-    for (std::istreambuf_iterator<char> byte(file), end; byte != end; ++byte) {
-      hash = (hash ^ static_cast<unsigned char>(*byte)) * prime;
-    }
+    bytes.append(std::istreambuf_iterator<char>(file), {});
   }
-  return fmt::format("{:016x}", hash);
+  return digest(bytes);
 }
 
 io::Provenance provenance(const FlightSettings& settings, const PipelineOptions& options) {

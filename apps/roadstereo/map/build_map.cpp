@@ -122,8 +122,9 @@ class MapBuilder {
 
   Pass open_pass(const MapPass& from) const {
     Pass pass;
-    pass.source = std::make_unique<RectifiedSource>(io::open_source(from.source, from.source_options), from.calibration,
-                                                    from.options.threads);
+    pass.source =
+        std::make_unique<RectifiedSource>(io::open_source(from.source, make_source_options(from.source_settings)),
+                                          from.calibration, from.options.threads);
     if (!from.find_white_level) pass.source->ignore_white_level();
     if (pass.source->source().live()) fail(from.source[0], ": a camera has no trajectory; record it first");
     const Trajectory trajectory = io::read_trajectory(from.trajectory);

@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "roadstereo/io/frame_source.hpp"
 #include "roadstereo/pipeline.hpp"
+#include "source_options.hpp"
 
 namespace roadstereo::cli {
 
 /// A recording of a map and its poses.
 struct MapPass {
   std::vector<std::string> source;  ///< one name, or left and right
-  io::SourceOptions source_options;
+  SourceSettings source_settings;
   std::vector<std::string> calibration;  ///< empty: that of the source
   std::string trajectory;                ///< file of the poses
   std::int64_t from = 0;             ///< frames that should have a pose, of a run those that it processed: the first

@@ -77,7 +77,8 @@ std::vector<MapPass> recordings_of(const MapSettings& settings) {
          " trajectories; every recording needs one --trajectory FILE");
   }
   MapPass pass;
-  pass.source_options = make_source_options(settings.source_settings);
+  make_source_options(settings.source_settings);  // checked first
+  pass.source_settings = settings.source_settings;
   pass.calibration = settings.calibration;
   pass.options = make_options(settings.processing);
   pass.find_white_level = !sets_white_level(settings.processing);

@@ -58,12 +58,11 @@ MapPass pass_of(const fs::path& folder, const Json& summary) {
   for (const Json& name : inputs.at("calibration")) {
     pass.calibration.push_back(input_file(folder, name.get<std::string>()));
   }
-  SourceSettings source;
+  SourceSettings& source = pass.source_settings;
   source.layout = inputs.at("layout").get<std::string>();
   source.topics = inputs.at("topics").get<std::vector<std::string>>();
   source.max_time_difference_ms = inputs.at("max_time_difference_ms").get<double>();
   source.rate_hz = inputs.at("rate_hz").get<double>();
-  pass.source_options = make_source_options(source);
   pass.from = summary.at("from").get<std::int64_t>();
   if (const Json& to = summary.at("to"); !to.is_null()) pass.to = to.get<std::int64_t>();
   pass.every = summary.at("every").get<std::int64_t>();
