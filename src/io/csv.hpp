@@ -1,8 +1,11 @@
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <string>
 #include <string_view>
+
+#include "roadstereo/measurement.hpp"
 
 #pragma GCC visibility push(default)
 namespace roadstereo::io {
@@ -15,11 +18,19 @@ class CsvLine {
   CsvLine& add(std::string_view text);
   CsvLine& add(const char* text) { return add(std::string_view(text)); }
   CsvLine& add(std::int64_t value);
+  template <std::integral Integer>
+  CsvLine& add(Integer value) {
+    return add(static_cast<std::int64_t>(value));
+  }
   CsvLine& add(bool value);
   /// Adds a number with the fewest digits that are read back as the same number; empty if it is not finite.
   CsvLine& add(double value);
   /// Adds a number with `decimals` decimals.
   CsvLine& add(double value, int decimals);
+  /// Adds a value and its standard error.
+  CsvLine& add(const Measurement& measured, int decimals) {
+    return add(measured.value, decimals).add(measured.std_error, decimals);
+  }
   CsvLine& add_nothing();
 
   std::string end();

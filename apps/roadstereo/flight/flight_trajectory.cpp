@@ -40,7 +40,7 @@ std::string poses_csv(const Trajectory& trajectory, const std::vector<double>& t
   for (std::size_t i = 0; i < trajectory.frames.size(); ++i) {
     const FramePose& pose = trajectory.frames[i];
     io::CsvLine line;
-    line.add(std::int64_t{pose.frame}).add(times_s[i]).add(std::int64_t{pose.piece});
+    line.add(pose.frame).add(times_s[i]).add(pose.piece);
     add_matrix(pose.camera_to_world, line);
     add_deviations(pose.covariance, line);
     text += line.end();
@@ -55,7 +55,7 @@ std::string links_csv(const std::vector<FrameLink>& links) {
       matrix_names, deviation_names);
   for (const FrameLink& link : links) {
     io::CsvLine line;
-    line.add(std::int64_t{link.from}).add(std::int64_t{link.to}).add(name_of(link.status));
+    line.add(link.from).add(link.to).add(name_of(link.status));
     line.add(link.correlation, 3).add(link.overlap, 3);
     add_matrix(link.motion, line);
     add_deviations(link.covariance, line);
@@ -84,7 +84,7 @@ std::string loops_csv(const std::vector<LoopLink>& loops) {
                                  matrix_names, deviation_names);
   for (const LoopLink& loop : loops) {
     io::CsvLine line;
-    line.add(std::int64_t{loop.link.from}).add(std::int64_t{loop.link.to}).add(std::int64_t{loop.used ? 1 : 0});
+    line.add(loop.link.from).add(loop.link.to).add(loop.used ? 1 : 0);
     line.add(loop.link.correlation, 3).add(loop.link.overlap, 3).add(loop.before_m).add(loop.after_m);
     add_matrix(loop.link.motion, line);
     add_deviations(loop.link.covariance, line);

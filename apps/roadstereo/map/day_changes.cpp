@@ -1,5 +1,7 @@
 #include "map/day_changes.hpp"
 
+#include <fmt/core.h>
+
 #include <limits>
 
 #include "io/csv.hpp"
@@ -76,13 +78,13 @@ std::string changes_csv(const BuiltMap& built, const std::vector<DayChange>& cha
   for (const DayChange& change : changes) {
     const RoadDamageRecord& last = last_of(change);
     const std::array<double, 2> at = in_crs(built, last.best.at_m);
-    text +=
-        fmt::format("{},{},{},{},", name_of(change.kind), name_of(last.best.damage.kind), csv(at[0], 3), csv(at[1], 3));
+    io::CsvLine line;
+    line.add(name_of(change.kind)).add(name_of(last.best.damage.kind)).add(at[0], 3).add(at[1], 3);
     for (const auto member : {&RoadDamageRecord::max_depth_m, &RoadDamageRecord::area_m2}) {
-      text += csv(figure(change.before, member), 6) + "," + csv(figure(change.after, member), 6) + ",";
+      line.add(figure(change.before, member), 6).add(figure(change.after, member), 6);
     }
-    text += csv(change.height_change_m, 6) + ",";
-    text += io::CsvLine().add(built.days[change.before_day].name).add(built.days[change.after_day].name).end();
+    line.add(change.height_change_m, 6).add(built.days[change.before_day].name);
+    text += line.add(built.days[change.after_day].name).end();
   }
   return text;
 }

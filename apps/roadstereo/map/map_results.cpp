@@ -23,19 +23,17 @@ std::string damages_csv(const BuiltMap& built, const MapResults& results) {
       "id,kind,x_m,y_m,max_depth_m,max_depth_stderr_m,mean_depth_m,mean_depth_stderr_m,area_m2,area_stderr_m2,"
       "volume_m3,volume_stderr_m3,length_m,width_m,angle_deg,distress,severity,confidence,sightings,passes,views,"
       "found_in_map,day\r\n";
+  io::CsvLine line;
   for (std::size_t k = 0; k < results.damages.size(); ++k) {
     const RoadDamageRecord& damage = results.damages[k];
     const std::array<double, 2> at = in_crs(built, damage.best.at_m);
     const DamageMetrics& metrics = *damage.best.damage.metrics;
-    text += fmt::format("{},{},{},{},", damage.id, name_of(damage.best.damage.kind), csv(at[0], 3), csv(at[1], 3));
-    for (const Measurement& measured : {damage.max_depth_m, damage.mean_depth_m, damage.area_m2, damage.volume_m3}) {
-      text += fmt::format("{},{},", csv(measured.value, 6), csv(measured.std_error, 6));
-    }
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},", csv(metrics.length_m, 4), csv(metrics.width_m, 4),
-                        csv(to_degrees(damage.best.length_angle_rad), 1), name_of(metrics.distress),
-                        name_of(damage.severity), csv(damage.confidence, 3), damage.sightings, damage.passes,
-                        damage.views, damage.found_in_map ? 1 : 0);
-    text += io::CsvLine().add(built.days[results.damage_days[k]].name).end();
+    line.add(damage.id).add(name_of(damage.best.damage.kind)).add(at[0], 3).add(at[1], 3);
+    line.add(damage.max_depth_m, 6).add(damage.mean_depth_m, 6).add(damage.area_m2, 6).add(damage.volume_m3, 6);
+    line.add(metrics.length_m, 4).add(metrics.width_m, 4).add(to_degrees(damage.best.length_angle_rad), 1);
+    line.add(name_of(metrics.distress)).add(name_of(damage.severity)).add(damage.confidence, 3);
+    line.add(damage.sightings).add(damage.passes).add(damage.views).add(damage.found_in_map ? 1 : 0);
+    text += line.add(built.days[results.damage_days[k]].name).end();
   }
   return text;
 }
@@ -44,12 +42,10 @@ std::string sighting_row(const BuiltMap& built, const DamageSighting& sighting) 
   const Damage& damage = sighting.found.damage;
   const DamageMetrics& metrics = *damage.metrics;
   const std::array<double, 2> at = in_crs(built, sighting.found.at_m);
-  std::string text =
-      fmt::format("{},{},{},{},{},", sighting.pass, sighting.frame, name_of(damage.kind), csv(at[0], 3), csv(at[1], 3));
-  for (const Measurement& measured : {metrics.max_depth_m, metrics.mean_depth_m, metrics.area_m2}) {
-    text += fmt::format("{},{},", csv(measured.value, 6), csv(measured.std_error, 6));
-  }
-  return text + fmt::format("{},{}\r\n", csv(damage.confidence, 3), damage.cut_by_border ? 1 : 0);
+  io::CsvLine line;
+  line.add(sighting.pass).add(sighting.frame).add(name_of(damage.kind)).add(at[0], 3).add(at[1], 3);
+  line.add(metrics.max_depth_m, 6).add(metrics.mean_depth_m, 6).add(metrics.area_m2, 6);
+  return line.add(damage.confidence, 3).add(damage.cut_by_border ? 1 : 0).end();
 }
 
 std::string sightings_csv(const BuiltMap& built) {
@@ -66,14 +62,13 @@ std::string transverse_csv(const BuiltMap& built, const std::vector<LaneProfiles
   std::string text =
       "path,station_m,x_m,y_m,width_m,rut_depth_m,rut_depth_stderr_m,rut_noise_floor_m,rut_resolvable,cross_slope,"
       "cross_slope_stderr\r\n";
+  io::CsvLine line;
   for (std::size_t path = 0; path < lanes.size(); ++path) {
     for (const TransverseProfile& profile : lanes[path].transverse) {
       const std::array<double, 2> at = in_crs(built, profile.at_m);
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\r\n", path, csv(profile.station_m, 3), csv(at[0], 3),
-                          csv(at[1], 3), csv(profile.width_m, 2), csv(profile.rut_depth_m.value, 5),
-                          csv(profile.rut_depth_m.std_error, 5), csv(profile.rut_noise_floor_m, 5),
-                          profile.rut_resolvable ? 1 : 0, csv(profile.cross_slope.value, 5),
-                          csv(profile.cross_slope.std_error, 5));
+      line.add(path).add(profile.station_m, 3).add(at[0], 3).add(at[1], 3).add(profile.width_m, 2);
+      line.add(profile.rut_depth_m, 5).add(profile.rut_noise_floor_m, 5).add(profile.rut_resolvable ? 1 : 0);
+      text += line.add(profile.cross_slope, 5).end();
     }
   }
   return text;
@@ -81,12 +76,12 @@ std::string transverse_csv(const BuiltMap& built, const std::vector<LaneProfiles
 
 std::string longitudinal_csv(const BuiltMap& built, const std::vector<LaneProfiles>& lanes) {
   std::string text = "path,offset_m,station_m,x_m,y_m,height_m,height_stderr_m\r\n";
+  io::CsvLine line;
   for (std::size_t path = 0; path < lanes.size(); ++path) {
     for (const LongitudinalPoint& point : lanes[path].longitudinal) {
       const std::array<double, 2> at = in_crs(built, point.at_m);
-      text +=
-          fmt::format("{},{},{},{},{},{},{}\r\n", path, csv(point.offset_m, 3), csv(point.station_m, 3), csv(at[0], 3),
-                      csv(at[1], 3), csv(built.origin_m[2] + point.height_m, 5), csv(point.sigma_m, 5));
+      line.add(path).add(point.offset_m, 3).add(point.station_m, 3).add(at[0], 3).add(at[1], 3);
+      text += line.add(built.origin_m[2] + point.height_m, 5).add(point.sigma_m, 5).end();
     }
   }
   return text;
@@ -94,11 +89,11 @@ std::string longitudinal_csv(const BuiltMap& built, const std::vector<LaneProfil
 
 std::string roughness_csv(const std::vector<LaneProfiles>& lanes) {
   std::string text = "path,offset_m,start_m,length_m,index_m_km,noise_floor_m_km,resolvable\r\n";
+  io::CsvLine line;
   for (std::size_t path = 0; path < lanes.size(); ++path) {
     for (const RoughnessSection& section : lanes[path].sections) {
-      text += fmt::format("{},{},{},{},{},{},{}\r\n", path, csv(section.offset_m, 3), csv(section.start_m, 2),
-                          csv(section.length_m, 2), csv(section.index_m_km, 3), csv(section.noise_floor_m_km, 3),
-                          section.resolvable ? 1 : 0);
+      line.add(path).add(section.offset_m, 3).add(section.start_m, 2).add(section.length_m, 2);
+      text += line.add(section.index_m_km, 3).add(section.noise_floor_m_km, 3).add(section.resolvable ? 1 : 0).end();
     }
   }
   return text;

@@ -1,25 +1,11 @@
 #pragma once
 
-#include <fmt/core.h>
-
 #include <array>
-#include <cmath>
-#include <string>
 
 #include "json_text.hpp"
 #include "map/build_map.hpp"
 
 namespace roadstereo::cli {
-
-/// A number for CSV, empty if it is unknown.
-inline std::string csv(double value, int decimals) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "";
-}
-
-/// A value and its standard error for CSV.
-inline std::string csv(const Measurement& measured, int decimals) {
-  return csv(measured.value, decimals) + "," + csv(measured.std_error, decimals);
-}
 
 inline nlohmann::ordered_json measurement_json(const Measurement& measured) {
   return {{"value", json_number(measured.value)}, {"std_error", json_number(measured.std_error)}};

@@ -66,7 +66,7 @@ std::string frames_csv_row(const FlightFrame& frame) {
       .add(frame.sigma_d_px)
       .add(frame.noise_px);
   line.add(100 * frame.valid_share);
-  good ? line.add(static_cast<std::int64_t>(frame.damages.size())) : line.add_nothing();
+  good ? line.add(frame.damages.size()) : line.add_nothing();
   line.add(frame.matching_ms, 2).add(frame.damage_ms, 2).add(remarks(frame));
   return line.end();
 }
