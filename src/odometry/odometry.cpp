@@ -176,8 +176,7 @@ const FramePose& Odometry::State::add(int frame, const OdometryFrame& maps) {
   std::optional<Alignment> alignment;
   bool is_lost = false;
   if (reference_) {
-    const bool follows = trajectory.frames.back().piece == reference_->pose.piece;
-    alignment = link(*reference_, own, maps, follows ? std::optional(predicted(steps)) : std::nullopt);
+    alignment = link(*reference_, own, maps, predicted(steps));
     if (!alignment && lost_) {
       alignment = link(*lost_, own, maps, std::nullopt);
       is_lost = alignment.has_value();
