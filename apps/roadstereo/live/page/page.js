@@ -233,6 +233,8 @@
     session = state.session;
     listed.clear();
     document.querySelector("#list tbody").replaceChildren();
+    document.querySelector("#list .scroll").hidden = true;
+    element("none").hidden = false;
   }
 
   /** Requests one view; returns its number. */
