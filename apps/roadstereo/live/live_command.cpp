@@ -84,6 +84,7 @@ void live(const LiveCommandArguments& arguments, const NamedOpener& opener) {
   session.start();
   watch(arguments, session, start, *signals);
   signals.reset();
+  session.stop();
   const std::string last_message = session.board().status().message;
   session.end();
   server.reset();

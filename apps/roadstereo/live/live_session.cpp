@@ -92,7 +92,7 @@ void LiveSession::start_threads() {
 }
 
 /// Stops the threads in the order of the data flow, so that pairs already read are finished.
-void LiveSession::join() {
+void LiveSession::stop() {
   if (!capturing_.joinable()) return;
   capturing_.request_stop();
   capturing_.join();
@@ -103,7 +103,7 @@ void LiveSession::join() {
 }
 
 void LiveSession::end() {
-  join();
+  stop();
   try {
     failure_.rethrow();
   } catch (const std::exception& error) {
@@ -114,7 +114,7 @@ void LiveSession::end() {
 }
 
 LiveSession::~LiveSession() {
-  join();
+  stop();
 }
 
 }  // namespace roadstereo::cli

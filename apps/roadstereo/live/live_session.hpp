@@ -44,13 +44,14 @@ class LiveSession {
   /// Whether the recording has ended or a thread has failed.
   bool finished() const { return finished_; }
 
-  /// Stops reading, finishes all pairs already read and the recording, and sets the board to ended. Rethrows the first
-  /// exception of a thread.
+  /// Stops reading, and finishes all pairs already read and the recording.
+  void stop();
+
+  /// The same, and sets the board to ended. Rethrows the first exception of a thread.
   void end();
 
  private:
   void start_threads();
-  void join();
 
   LiveBoard board_;
   LatestValue<CapturedPair> captured_;
