@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "graph/fix_curve.hpp"
+#include "graph/graph_pose.hpp"
+#include "graph/pose_curve.hpp"
+#include "graph/pose_graph_problem.hpp"
+#include "graph/track_observations.hpp"
+#include "roadstereo/pose_graph.hpp"
+
+namespace roadstereo {
+
+/// Fixes of a pose graph: where they put the pieces of its trajectory, and how they fit its poses.
+class GraphTrack {
+ public:
+  /// All three outlive it.
+  GraphTrack(const PoseGraphInput& input, const PoseGraphOptions& options, std::vector<GraphPose>& poses)
+      : input_(input), options_(options), poses_(poses) {}
+
+  /// Puts the pieces where the fixes have them, or writes down why the fixes cannot be used.
+  void align(PoseGraphResult& result);
+
+  /// Whether there are fixes, and they are used.
+  bool is_used() const { return curve_ != nullptr; }
+  /// Whether the fixes place a frame.
+  bool anchors(std::size_t frame) const { return is_used() && anchored_[frame] != 0; }
+
+  TrackUnknowns& unknowns() { return unknowns_; }
+  void add_to(PoseGraphProblem& problem);
+
+  /// Takes the noise of the fixes for what their distances from the last solution say, unless that is hardly less than
+  /// before and `always` is false: it falls while the time offset is being found. Returns whether it was taken.
+  bool take_noise(bool always);
+
+  /// Holds what a solution does not tell from then on. Returns whether that is anything.
+  bool hold_unknown(PoseGraphProblem& solution);
+
+  /// How the fixes fit a solution; nothing if there is none at the times of the frames.
+  std::optional<TrackFit> fit(PoseGraphProblem& solution) const;
+
+ private:
+  std::vector<PoseCurve> anchored_pieces() const;
+  double shared_by(double steps, double time_s) const;
+  void add_levels(PoseGraphProblem& problem) const;
+  std::vector<int> unknown_lever_axes(PoseGraphProblem& solution) const;
+  bool finds_time_offset(PoseGraphProblem& solution) const;
+  std::vector<double> distances() const;
+  std::size_t frames_with_position() const;
+
+  const PoseGraphInput& input_;
+  const PoseGraphOptions& options_;
+  std::vector<GraphPose>& poses_;
+  std::vector<char> anchored_;       ///< whether the fixes place a frame; empty before `align`
+  std::unique_ptr<FixCurve> curve_;  ///< null without fixes
+  std::vector<PoseCurve> pieces_;    ///< anchored ones, before the last solution
+  std::vector<TrackObservation> observations_;
+  TrackUnknowns unknowns_;
+  double aligned_offset_s_ = 0;          ///< 0 unless the alignment needs another one
+  bool time_offset_found_ = true;        ///< false: held
+  std::vector<int> unknown_lever_axes_;  ///< held at 0
+  double noise_m_ = 0;                   ///< of the fixes, per axis
+};
+
+}  // namespace roadstereo
