@@ -127,10 +127,6 @@ class Optimiser {
     return (whitening<6>(covariance) * x).squaredNorm();
   }
 
-  static Eigen::Matrix<double, 6, 6> covariance_of(const FrameLink& link) {
-    return Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(link.covariance.data());
-  }
-
   /// Loops that agree with the trajectory (χ² test with both covariances), and how many times the variances of links
   /// are too small: errors of neighbouring links are alike, which adds up along the chain.
   std::vector<char> agreeing(const PoseGraphProblem& problem) {

@@ -11,15 +11,6 @@ namespace {
 using Covariance = Eigen::Matrix<double, 6, 6>;
 constexpr int pose_size = 6;
 
-/// Covariance of a link. Variances below what rounding leaves would make it singular.
-Covariance covariance_of(const FrameLink& link) {
-  constexpr double least_sd_m = 1e-6, least_sd_rad = 1e-7;
-  Covariance covariance = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(link.covariance.data());
-  covariance.diagonal().head<3>().array() += least_sd_m * least_sd_m;
-  covariance.diagonal().tail<3>().array() += least_sd_rad * least_sd_rad;
-  return covariance;
-}
-
 /// Distance from an expected value in standard errors.
 template <int N>
 struct PriorResidual {
@@ -38,6 +29,14 @@ ceres::CostFunction* prior(const Eigen::Matrix<double, N, 1>& weights) {
 }
 
 }  // namespace
+
+Covariance covariance_of(const FrameLink& link) {
+  constexpr double least_sd_m = 1e-6, least_sd_rad = 1e-7;
+  Covariance covariance = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(link.covariance.data());
+  covariance.diagonal().head<3>().array() += least_sd_m * least_sd_m;
+  covariance.diagonal().tail<3>().array() += least_sd_rad * least_sd_rad;
+  return covariance;
+}
 
 PoseGraphProblem::PoseGraphProblem(std::vector<GraphPose>& poses, TrackUnknowns& track) : poses_(poses), track_(track) {
   for (GraphPose& pose : poses_) {

@@ -18,6 +18,9 @@ struct TrackUnknowns {
   double time_offset_s = 0;
 };
 
+/// Covariance of a link. Variances below what rounding leaves would make it singular.
+Eigen::Matrix<double, 6, 6> covariance_of(const FrameLink& link);
+
 /// Least-squares problem of a pose graph (Ceres, Levenberg–Marquardt on normal equations, one thread, so that the
 /// result does not depend on the number of threads).
 class PoseGraphProblem {

@@ -144,6 +144,15 @@ TEST(PoseGraph, TrueLoopsOutvoteFalseOne) {
   EXPECT_NEAR(result.trajectory.frames[3].camera_to_world[3], drift, 1e-4);
 }
 
+/// Nobody knows a motion exactly, but whoever joins recordings by hand may give no error.
+TEST(PoseGraph, LoopWithoutErrorIsUsed) {
+  PoseGraphInput input = square({4e-4, 1e-4, 3e-4});
+  input.loops = {loop_of(link_of(0, 3, step(0.003, 1), 0, 0))};
+  const PoseGraphResult result = optimise_poses(input);
+  EXPECT_NEAR(result.trajectory.frames[3].camera_to_world[3], 0.003, 1e-6);
+  EXPECT_EQ(result.loops_used(), 1U);
+}
+
 TEST(PoseGraph, LinksOfUnknownFramesAreErrors) {
   PoseGraphInput input = square({1e-4, 1e-4, 1e-4});
   input.links.back().to = 7;
