@@ -76,15 +76,23 @@ inline RigidMotion rigid_motion(const Twist& twist) {
   return motion;
 }
 
-/// Inverse of `rigid_motion` for rotations by less than π.
+/// Inverse of `rigid_motion` for rotations by up to π.
 inline Twist twist_of(const RigidMotion& motion) {
   const Matrix<3>& r = motion.rotation;
   const Vector<3> sine{(r[2][1] - r[1][2]) / 2, (r[0][2] - r[2][0]) / 2, (r[1][0] - r[0][1]) / 2};
-  const double length = std::sqrt(dot(sine, sine));
-  const double angle = std::atan2(length, (r[0][0] + r[1][1] + r[2][2] - 1) / 2);
-  const double scale = length > 0 ? angle / length : 1;
+  const double length = std::sqrt(dot(sine, sine)), cosine = (r[0][0] + r[1][1] + r[2][2] - 1) / 2;
+  const double angle = std::atan2(length, cosine);
+  constexpr double near_half_turn = 1e-4;  // rounding has its share of the sine: (R + Rᵀ)/2 = cos + (1 − cos) a aᵀ
+  Vector<3> axis = sine;
+  double axis_length = length;
+  if (cosine < 0 && length < near_half_turn) {
+    const std::size_t k = r[0][0] > r[1][1] ? (r[0][0] > r[2][2] ? 0 : 2) : (r[1][1] > r[2][2] ? 1 : 2);
+    for (std::size_t i = 0; i < 3; ++i) axis[i] = (r[i][k] + r[k][i]) / 2 - (i == k ? cosine : 0);
+    axis_length = std::copysign(std::sqrt(dot(axis, axis)), dot(axis, sine));
+  }
+  const double scale = axis_length != 0 ? angle / axis_length : 1;
   return {motion.translation[0], motion.translation[1], motion.translation[2],
-          scale * sine[0],       scale * sine[1],       scale * sine[2]};
+          scale * axis[0],       scale * axis[1],       scale * axis[2]};
 }
 
 /// Removes what rounding adds to the rotation: products of products would amplify it.

@@ -39,5 +39,25 @@ TEST(RigidMotion, InverseUndoes) {
   }
 }
 
+/// A vehicle that has turned round. R = 2 a aᵀ − 1 of a half turn about a.
+TEST(RigidMotion, HalfTurnsAreKept) {
+  for (const Vector<3>& axis : {Vector<3>{0, 1, 0}, Vector<3>{0.6, 0.64, 0.48}, Vector<3>{-0.48, 0.6, -0.64}}) {
+    RigidMotion motion;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) motion.rotation[i][j] = 2 * axis[i] * axis[j] - (i == j ? 1 : 0);
+    }
+    for (const double short_of_rad : {0.0, 1e-12, 1e-9, 1e-6, 1e-5, 1e-3}) {
+      const double back = -short_of_rad;
+      const RigidMotion turned = rigid_motion({0, 0, 0, back * axis[0], back * axis[1], back * axis[2]}) * motion;
+      const RigidMotion kept = orthonormal(turned);
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(kept.rotation[i][j], turned.rotation[i][j], 1e-11) << back;
+      }
+      const Twist twist = twist_of(turned);
+      EXPECT_NEAR(std::hypot(twist[3], twist[4], twist[5]), std::numbers::pi - short_of_rad, 1e-12);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace roadstereo
