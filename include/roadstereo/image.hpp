@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -21,7 +22,11 @@ class Image {
   /// An empty image whose pixels will lie in `memory`, which outlives it.
   explicit Image(ImageMemory& memory) : pixels_(ImageAllocator<T>(&memory)) {}
 
-  Image(const Image&) = default;
+  /// The copy is on the heap.
+  Image(const Image& other) {
+    resize(other.width_, other.height_);
+    std::copy(other.pixels_.begin(), other.pixels_.end(), pixels_.begin());
+  }
   Image& operator=(const Image&) = default;
   /// The moved image is empty afterwards.
   Image(Image&& moved) noexcept
@@ -44,9 +49,8 @@ class Image {
   }
   /// Changes the size and sets every pixel to `value`.
   void assign(int width, int height, T value) {
-    pixels_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), value);
-    width_ = width;
-    height_ = height;
+    resize(width, height);
+    std::fill(pixels_.begin(), pixels_.end(), value);
   }
 
   int width() const { return width_; }

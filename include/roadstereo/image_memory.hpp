@@ -19,8 +19,7 @@ class ImageMemory {
   ~ImageMemory() = default;
 };
 
-/// Allocator of images: allocates from an ImageMemory, or from the heap. It moves and swaps with the image; copies of
-/// an image are allocated on the heap.
+/// Allocator of images: allocates from an ImageMemory, or from the heap. It moves and swaps with the image.
 template <class T>
 class ImageAllocator {
  public:
@@ -45,7 +44,11 @@ class ImageAllocator {
       ::operator delete(pixels);
     }
   }
-  ImageAllocator select_on_container_copy_construction() const { return {}; }
+  /// A pixel without a value stays as it is: images of another size are written in full.
+  template <class U>
+  void construct(U* pixel) {
+    ::new (static_cast<void*>(pixel)) U;
+  }
 
   ImageMemory* memory() const { return memory_; }
   bool operator==(const ImageAllocator& other) const { return memory_ == other.memory_; }

@@ -22,7 +22,8 @@ constexpr float min_core_area_share = 0.1F;  ///< of the minimum area of a damag
 
 /// Depths, positive inside a kind of damage.
 Image<float> depths_of(const Image<float>& depth, DamageKind kind) {
-  Image<float> signed_depth(depth.width(), depth.height());
+  Image<float> signed_depth;
+  signed_depth.resize(depth.width(), depth.height());
   const float sign = sign_of(kind);
   const float* const from = depth.row(0);
   float* const to = signed_depth.row(0);
@@ -50,7 +51,8 @@ Image<std::uint8_t> allowed_cells(const SearchInput& input, DamageKind kind, con
 Image<std::uint8_t> core_cells(const Image<float>& depth, const Image<std::uint8_t>& allowed_cells,
                                const Thresholds& thresholds) {
   const int width = depth.width();
-  Image<std::uint8_t> cores(width, depth.height());
+  Image<std::uint8_t> cores;
+  cores.resize(width, depth.height());
   std::vector<float> min_depths(static_cast<std::size_t>(width));
   for (int j = 0; j < depth.height(); ++j) {
     thresholds.min_depths(j, min_depths.data());

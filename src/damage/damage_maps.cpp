@@ -95,11 +95,8 @@ void fill_road_rows(const DamageInput& input, const Segmentation& segmentation, 
 }
 
 Image<float> depth_without_islands(const Segmentation& segmentation, int threads) {
-  const Image<float>& measured = segmentation.depth_cells.depth;
-  Image<float> depth(measured.width(), measured.height());
-  Image<std::uint8_t> valid(measured.width(), measured.height());
-  std::copy_n(measured.row(0), measured.pixels(), depth.row(0));
-  std::copy_n(segmentation.depth_cells.valid.row(0), valid.pixels(), valid.row(0));
+  Image<float> depth = segmentation.depth_cells.depth;
+  Image<std::uint8_t> valid = segmentation.depth_cells.valid;
   bool has_islands = false;
   for (const Candidate& candidate : segmentation.candidates) {
     const float sign = sign_of(candidate.kind);

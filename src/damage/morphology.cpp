@@ -71,7 +71,8 @@ void copy_inverted(const std::uint8_t* cells, std::uint8_t inverse, int count, s
 Image<std::uint8_t> dilate(const Image<std::uint8_t>& mask, int radius, std::uint8_t inverse, int threads) {
   constexpr int rows_per_band = 64;
   const int width = mask.width(), height = mask.height();
-  Image<std::uint8_t> dilated(width, height);
+  Image<std::uint8_t> dilated;
+  dilated.resize(width, height);
   parallel_rows(height, rows_per_band, threads, [&](int first, int last, int) {
     const CellBox to{0, first, width - 1, last - 1};
     const CellBox from{0, std::max(0, first - radius), width - 1, std::min(height, last + radius) - 1};

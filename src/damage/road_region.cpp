@@ -27,7 +27,8 @@ Image<std::uint8_t> cells_near_surface(const Cells& cells, const SurfaceCoordina
   constexpr int rows_per_band = 64;
   constexpr double max_sigmas = 3;
   const auto max_distance = static_cast<float>(max_sigmas * surface.noise);
-  Image<std::uint8_t> near(cells.width(), cells.height());
+  Image<std::uint8_t> near;
+  near.resize(cells.width(), cells.height());
   parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int j = first; j < last; ++j) {
       mark_near(cells.value.row(j), surface.value.row(j), coordinates.scale.row(j), max_distance,
@@ -93,7 +94,8 @@ bool is_divided(const ConnectedComponents& parts) {
 Image<float> heights_above(const Cells& cells, const SurfaceCoordinates& coordinates, const RoadSurface& surface,
                            int threads) {
   constexpr int rows_per_band = 64;
-  Image<float> heights(cells.width(), cells.height());
+  Image<float> heights;
+  heights.resize(cells.width(), cells.height());
   parallel_rows(cells.height(), rows_per_band, threads, [&](int first, int last, int) {
     for (int j = first; j < last; ++j) {
       const float *value = cells.value.row(j), *road = surface.value.row(j), *scale = coordinates.scale.row(j);

@@ -16,8 +16,7 @@ constexpr std::size_t max_cut_divisor = 20;  ///< a gap that either cuts is up t
 
 /// Mask of the gaps in the view, 0 where there is no measurement.
 Image<std::uint8_t> known_cells(const Image<std::uint8_t>& valid, const CommonView& view) {
-  Image<std::uint8_t> mask(valid.width(), valid.height());
-  std::copy_n(valid.row(0), valid.pixels(), mask.row(0));
+  Image<std::uint8_t> mask = valid;
   view.fill_outside(mask);
   return mask;
 }
