@@ -1,6 +1,8 @@
 #include "core/binned_selection.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "core/order_statistics.hpp"
@@ -34,12 +36,18 @@ void collect(std::span<const float> values, const std::uint16_t* bins, std::uint
   const hn::ScalableTag<std::uint16_t> d;
   const std::size_t lanes = hn::Lanes(d), size = values.size();
   const auto wanted = hn::Set(d, bin);
-  for (std::size_t first = 0; first < size; first += lanes) {
-    const std::size_t end = std::min(first + lanes, size);
-    if (end - first == lanes && hn::AllFalse(d, hn::Eq(hn::LoadU(d, bins + first), wanted))) continue;
-    for (std::size_t k = first; k < end; ++k) {
-      if (bins[k] == bin) *in_bin++ = values[k];
+  std::size_t first = 0;
+  for (; first + lanes <= size; first += lanes) {
+    std::array<std::uint8_t, hn::MaxLanes(d) / 8 + 8> found;  // a bit of each value
+    hn::StoreMaskBits(d, hn::Eq(hn::LoadU(d, bins + first), wanted), found.data());
+    for (std::size_t k = 0; 8 * k < lanes; ++k) {
+      for (unsigned left = found[k]; left != 0; left &= left - 1) {
+        *in_bin++ = values[first + 8 * k + static_cast<std::size_t>(std::countr_zero(left))];
+      }
     }
+  }
+  for (; first < size; ++first) {
+    if (bins[first] == bin) *in_bin++ = values[first];
   }
 }
 

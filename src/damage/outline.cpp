@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/order_statistics.hpp"
+#include "core/binned_selection.hpp"
 #include "damage/contours.hpp"
 #include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
@@ -149,10 +149,16 @@ BandAround band_around(const DepthField& field, const BoxMask& region, int near_
 
 float floor_of(std::vector<float> depths) {
   constexpr int iterations = 2;
-  float floor = nearest_quantile(depths, 0.75);
+  BinnedSelection selection;
+  const auto upper_quartile = [&] {
+    const auto [low, high] = range_of(depths);
+    selection.bin(depths, low, high);
+    return selection.select(static_cast<std::size_t>(std::lround(0.75 * static_cast<double>(depths.size() - 1))));
+  };
+  float floor = upper_quartile();
   for (int k = 0; k < iterations; ++k) {
     std::erase_if(depths, [floor](float depth) { return depth < 0.5F * floor; });
-    floor = nearest_quantile(depths, 0.75);
+    floor = upper_quartile();
   }
   return floor;
 }

@@ -20,9 +20,13 @@ struct RobustNormal {
 inline RobustNormal robust_normal(std::vector<float>& values) {
   if (values.empty()) return {};
   const auto [low, high] = range_of(values);
-  const float median = binned_median(values, low, high), farthest = std::max(high - median, median - low);
+  const std::size_t middle = values.size() / 2;
+  BinnedSelection selection;
+  selection.bin(values, low, high);
+  const float median = selection.select(middle), farthest = std::max(high - median, median - low);
   for (float& value : values) value = std::abs(value - median);
-  return {median, gaussian_mad * binned_median(values, 0, farthest), values.size()};
+  selection.bin(values, 0, farthest);
+  return {median, gaussian_mad * selection.select(middle), values.size()};
 }
 
 }  // namespace roadstereo
