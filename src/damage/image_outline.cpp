@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "damage/connected_components.hpp"
@@ -34,27 +35,22 @@ RobustNormal tone_of(const BoxMap& grey, const BoxMask& mask) {
   return robust_normal(values);
 }
 
-/// The road around a region: all of it, and that in each octant, since shadows, paint and patches end there.
-struct RoadTones {
-  RobustNormal all;
-  std::array<RobustNormal, Octants::count> in_octant;
-};
+/// The road around a region in each octant, since shadows, paint and patches end there.
+using OctantTones = std::array<RobustNormal, Octants::count>;
 
-RoadTones road_tones(const BoxMap& grey, const BoxMask& road, const Octants& octants) {
-  std::vector<float> all;
-  std::array<std::vector<float>, Octants::count> in_octant;
+OctantTones octant_tones(const BoxMap& grey, const BoxMask& road, const Octants& octants) {
+  std::array<std::vector<float>, Octants::count> values;
   const CellBox& box = grey.box;
   for (int j = 0; j < box.rows(); ++j) {
     const std::uint8_t* const is_road = road.cells().row(j);
     const float* const grey_levels = grey.values.row(j);
     for (int i = next_nonzero(is_road, 0, box.columns()); i < box.columns();
          i = next_nonzero(is_road, i + 1, box.columns())) {
-      all.push_back(grey_levels[i]);
-      in_octant[octants.of(box.first_column + i, box.first_row + j)].push_back(grey_levels[i]);
+      values[octants.of(box.first_column + i, box.first_row + j)].push_back(grey_levels[i]);
     }
   }
-  RoadTones tones{robust_normal(all), {}};
-  for (std::size_t k = 0; k < Octants::count; ++k) tones.in_octant[k] = robust_normal(in_octant[k]);
+  OctantTones tones;
+  for (std::size_t k = 0; k < Octants::count; ++k) tones[k] = robust_normal(values[k]);
   return tones;
 }
 
@@ -103,6 +99,11 @@ BoxMap smooth_grey_cells(const ImageEdges& image_edges, const CellBox& box, int 
   return result;
 }
 
+/// Clear `count` cells that are set, 255, in another mask.
+void clear(const std::uint8_t* set, int count, std::uint8_t* cells) {
+  for (int i = 0; i < count; ++i) cells[i] &= ~set[i];
+}
+
 /// Log of the ratio of the likelihoods of a grey level under two normal distributions.
 double log_ratio(double grey, const RobustNormal& one, const RobustNormal& other) {
   constexpr double min_sigma = 1;  // the unit, 1/16 grey level
@@ -120,34 +121,35 @@ void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uin
   constexpr std::size_t min_samples = 30;
   const int radius = image_edges.window_radius, columns = unseen.width(), rows = unseen.height();
   const CellBox around = region.box().grown(3 * radius, columns, rows);
-  const BoxMap grey = smooth_grey_cells(image_edges, around, columns, rows);
-  const BoxMask near = dilate(region, radius, window_rows, around);
-  BoxMask far = dilate(near, 2 * radius, 2 * window_rows, around), core = erode(region, 2, around);
-  for (int j = 0; j < around.rows(); ++j) {
-    const std::uint8_t* const is_unseen = unseen.row(around.first_row + j) + around.first_column;
-    const std::uint8_t* const is_near = near.cells().row(j);
-    std::uint8_t *const in_far = far.cells().row(j), *const in_core = core.cells().row(j);
-    for (int i = 0; i < around.columns(); ++i) {
-      const std::uint8_t is_seen = is_unseen[i] == 0 ? 255 : 0;
-      in_far[i] &= is_seen & ~is_near[i];
-      in_core[i] &= is_seen;
+  const auto clear_unseen = [&](BoxMask& mask) {
+    for (int j = 0; j < around.rows(); ++j) {
+      clear(unseen.row(around.first_row + j) + around.first_column, around.columns(), mask.cells().row(j));
     }
-  }
+  };
+  BoxMask core = erode(region, 2, around);
+  clear_unseen(core);
+  if (cell_count(core) < min_samples) return;
+  const BoxMask near = dilate(region, radius, window_rows, around);
+  BoxMask far = dilate(near, 2 * radius, 2 * window_rows, around);
+  clear_unseen(far);
+  clear(near.cells().row(0), static_cast<int>(near.cells().pixels()), far.cells().row(0));
+  const BoxMap grey = smooth_grey_cells(image_edges, around, columns, rows);
   const Octants octants(region.box());
-  const RobustNormal inside = tone_of(grey, core);
-  const RoadTones road = road_tones(grey, far, octants);
-  if (inside.samples < min_samples || road.all.samples < min_samples || inside.median == road.all.median) return;
+  const RobustNormal inside = tone_of(grey, core), road = tone_of(grey, far);
+  if (road.samples < min_samples || inside.median == road.median) return;
   // What differs even more from the road than the median inside does is at least as good as that.
   const auto ratio = [&](double level, const RobustNormal& outside) {
     const double of_level = log_ratio(level, inside, outside);
     const bool beyond_median = (level < inside.median) == (inside.median < outside.median);
     return beyond_median ? std::max(of_level, log_ratio(inside.median, inside, outside)) : of_level;
   };
-  const bool is_dark = inside.median < road.all.median;
+  const bool is_dark = inside.median < road.median;
+  std::optional<OctantTones> in_octant;  // few regions have cells beside them that differ from all of the road
   const auto is_inside = [&](double level, int i, int j) {
-    const RobustNormal& here = road.in_octant[octants.of(i, j)];
-    return (level < road.all.median) == is_dark && ratio(level, road.all) >= min_log_ratio &&
-           (here.samples < min_samples || ratio(level, here) > 0);
+    if ((level < road.median) != is_dark || ratio(level, road) < min_log_ratio) return false;
+    if (!in_octant) in_octant = octant_tones(grey, far, octants);
+    const RobustNormal& here = (*in_octant)[octants.of(i, j)];
+    return here.samples < min_samples || ratio(level, here) > 0;
   };
   std::vector<CellIndex> front = contour_cells(region, columns, rows);
   region = region.cropped(around);
