@@ -32,10 +32,10 @@ class FrameGeometry {
     const Point on_road = axes_.to_road(calibration_.point_m(u, v, disparity_plane_.disparity(u, v)));
     return {on_road[0], on_road[1]};
   }
-  /// Area of the road in one pixel, m², where its line of sight meets the road at `road`: Z³ / (f²·n·P).
-  double pixel_area(const Point& road) const {
-    const double f = calibration_.focal_px;
-    return road[2] * road[2] * road[2] / (f * f * distance(road));
+  /// n·P: distance along the road's normal.
+  double distance(const Point& point) const {
+    const Point& n = ground_plane_.normal;
+    return n[0] * point[0] + n[1] * point[1] + n[2] * point[2];
   }
   /// Depth along the road's normal from `road` to `measured`, two points of one line of sight.
   double depth_between(const Point& road, const Point& measured) const { return distance(measured) - distance(road); }
@@ -44,19 +44,13 @@ class FrameGeometry {
     return distance(measured) / (disparity + calibration_.disparity_offset_px);
   }
   const RoadAxes& axes() const { return axes_; }
-  double focal_px() const { return calibration_.focal_px; }
+  const StereoCalibration& calibration() const { return calibration_; }
 
   /// Convert a row of depths in place from pixels of ℓ' to metres along the road's normal. `surface` is ℓ' of the
   /// undamaged road.
   void depths_to_metres(int v, int width, const float* surface, float* depths) const;
 
  private:
-  /// n·P: distance along the road's normal.
-  double distance(const Point& point) const {
-    const Point& n = ground_plane_.normal;
-    return n[0] * point[0] + n[1] * point[1] + n[2] * point[2];
-  }
-
   StereoCalibration calibration_;
   DisparityPlane disparity_plane_;
   GroundPlane ground_plane_;
