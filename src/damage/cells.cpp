@@ -29,20 +29,24 @@ float hollow_error2(ImageView<const float> map, int reach, int u, int v) {
 }
 
 /// Means of a row of cells of `rows` × `factor` pixels, whose last one the border of the image may clip. The sums have
-/// `factor` columns for that one, too.
+/// `factor` columns for that one, too. With `known_factor`, unless it is 0, the loops become vectors.
+template <int known_factor>
 void mean_row(const PixelSums& columns, int factor, int rows, int width, int cells, float* means) {
+  const int side = known_factor > 0 ? known_factor : factor, whole = width / side;
   const float* const sums = columns.sum.data();
   const int* const counts = columns.count.data();
-  for (int i = 0; i < cells; ++i) {
+  const auto mean = [&](int i, int pixels) {
     float sum = 0;
     int count = 0;
-    for (int k = i * factor; k < (i + 1) * factor; ++k) {
-      sum += sums[k];
-      count += counts[k];
+    for (int k = 0; k < side; ++k) {
+      sum += sums[i * side + k];
+      count += counts[i * side + k];
     }
-    const bool valid = count > 0 && 2 * count >= rows * std::min(factor, width - i * factor);
-    means[i] = valid ? sum / static_cast<float>(count) : std::numeric_limits<float>::quiet_NaN();
-  }
+    const bool valid = count > 0 && 2 * count >= pixels;
+    return valid ? sum / static_cast<float>(count) : std::numeric_limits<float>::quiet_NaN();
+  };
+  for (int i = 0; i < whole; ++i) means[i] = mean(i, rows * side);
+  if (whole < cells) means[whole] = mean(whole, rows * (width - whole * side));
 }
 
 /// Throws Error unless the map has two different valid values.
@@ -80,7 +84,7 @@ Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigm
     if (smoothing_px == 0 || !has_uncertain(row, width)) return row;
     std::copy_n(row, width, errors);
     for (int u = 0; u < width; ++u) {
-      if (!(row[u] > max_sigma_px)) continue;
+      if (!(row[u] > max_sigma_px) || std::isnan(transformed(u, v))) continue;
       errors[u] = std::sqrt(std::max(0.0F, row[u] * row[u] - hollow_error2(transformed, smoothing_px, u, v)));
     }
     return errors;
@@ -103,7 +107,8 @@ Cells make_cells(ImageView<const float> transformed, ImageView<const float> sigm
       for (int v = j * factor; v < end; ++v) {
         columns.add(transformed.row(v), sigma.empty() ? zero_sigma.data() : certain(v, own.data()), width);
       }
-      mean_row(columns, factor, end - j * factor, transformed.width(), cells.width(), cells.value.row(j));
+      const auto mean = factor == 2 ? mean_row<2> : factor == 3 ? mean_row<3> : mean_row<0>;
+      mean(columns, factor, end - j * factor, width, cells.width(), cells.value.row(j));
     }
   });
   return cells;
