@@ -92,6 +92,22 @@ double least_contrast(double depth, const BandAround& band, double noise) {
   return least;
 }
 
+double least_sigma(const BandAround& band) {
+  const auto least = std::min_element(band.halves.begin(), band.halves.end(),
+                                      [](const auto& one, const auto& other) { return one.sigma < other.sigma; });
+  return std::min(band.whole.sigma, least->sigma);
+}
+
+/// Standard deviation of the road around a region, or of all road if that is less: in the distance, on gravel or in the
+/// shade the road may be noisier than here. A band that is noisier than all road needs no other measure.
+double noise_around(const DepthField& field, const Candidate& candidate, const BandAround& band, int near_cells,
+                    double of_road) {
+  constexpr double wide_band_radii = 3;
+  if (least_sigma(band) >= of_road) return of_road;
+  const RobustNormal wide = depths_around(field, candidate.cells, near_cells, wide_band_radii);
+  return wide.samples >= candidate.size ? std::min(of_road, wide.sigma) : of_road;
+}
+
 /// Number of cells, each counted by the square of its share of the depth of the floor, as by a matched filter: the
 /// smeared rim of a narrow hole says little of it.
 double floor_cells(std::span<const float> depths, double around, double floor) {
@@ -138,14 +154,11 @@ std::vector<float> depths_inside(const SearchImages& images, const Candidate& ca
 
 void add_evidence(const SearchInput& input, SearchImages& images, Candidate& candidate) {
   constexpr int near_cells = 3;  // closer to the rim the depth is smoothed
-  constexpr double band_radii = 1, wide_band_radii = 3;
+  constexpr double band_radii = 1;
   constexpr double min_noise_px = 1e-6;  // of maps without noise
   const std::vector<float> inside = depths_inside(images, candidate);
   const BandAround around = band_around(images.field(), candidate.cells, near_cells, band_radii);
-  // In the distance, on gravel or in the shade the road may be noisier than here.
-  const RobustNormal wide = depths_around(images.field(), candidate.cells, near_cells, wide_band_radii);
-  const bool is_known = wide.samples >= candidate.size;
-  const double of_road = input.depth_cells.noise, noise = is_known ? std::min(of_road, wide.sigma) : of_road;
+  const double noise = noise_around(images.field(), candidate, around, near_cells, input.depth_cells.noise);
   const double window = input.image_edges.window_radius, floor = floor_of(inside);
   const double samples = floor_cells(inside, around.whole.median, floor) / (std::numbers::pi * window * window);
   DamageEvidence& evidence = candidate.evidence;

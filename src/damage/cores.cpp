@@ -21,7 +21,8 @@ ConnectedComponent component_of(const std::vector<CellRun>& runs) {
   return component;
 }
 
-/// The connected parts of a core deeper than a level that are as large as a damage and have a floor deep enough.
+/// The connected parts of a core deeper than a level that are as large as a damage and have a floor deep enough;
+/// none if fewer than two are as large.
 std::vector<std::vector<CellRun>> basins_at(const Image<float>& depth, const ConnectedComponent& core, float level,
                                             float min_cells) {
   const CellBox& box = core.box;
@@ -31,9 +32,12 @@ std::vector<std::vector<CellRun>> basins_at(const Image<float>& depth, const Con
     std::uint8_t* const cells = deep.row(run.row - box.first_row);
     for (int i = run.first; i <= run.last; ++i) cells[i - box.first_column] = depths[i] > level ? 255 : 0;
   }
+  const ConnectedComponents parts(deep);
+  const auto is_large = [&](const ConnectedComponent& part) { return static_cast<float>(part.size) >= min_cells; };
   std::vector<std::vector<CellRun>> basins;
-  for (const ConnectedComponent& part : ConnectedComponents(deep)) {
-    if (static_cast<float>(part.size) < min_cells) continue;
+  if (std::count_if(parts.begin(), parts.end(), is_large) < 2) return basins;
+  for (const ConnectedComponent& part : parts) {
+    if (!is_large(part)) continue;
     std::vector<CellRun> runs;
     for (const CellRun& run : part.runs) {
       runs.push_back({run.row + box.first_row, run.first + box.first_column, run.last + box.first_column});
