@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "roadstereo/image.hpp"
@@ -13,11 +14,23 @@ struct LinearTaps {
 };
 
 /// Taps of a pixel. Cells are squares of `factor` pixels; there are `count` of them along the axis.
-LinearTaps linear_taps(int pixel, int factor, int count);
+inline LinearTaps linear_taps(int pixel, int factor, int count) {
+  const float half = 0.5F * static_cast<float>(factor - 1);
+  const float x =
+      std::clamp((static_cast<float>(pixel) - half) / static_cast<float>(factor), 0.0F, static_cast<float>(count - 1));
+  const int first = static_cast<int>(x);
+  const float weight = x - static_cast<float>(first);
+  return {first, weight > 0 ? first + 1 : first, weight};
+}
 
-/// Interpolate a map of cells bilinearly at pixel (u, v). Beyond the outermost centres the border is replicated. NaN if
-/// a tap is NaN.
-float interpolate_bilinear(const Image<float>& cells, int factor, int u, int v);
+/// Interpolate a map of cells bilinearly at pixel column u between its rows. Beyond the outermost centres the border is
+/// replicated. NaN if a tap is NaN.
+inline float interpolate_bilinear(const Image<float>& cells, int factor, int u, const LinearTaps& rows) {
+  const auto [left, right, s] = linear_taps(u, factor, cells.width());
+  const auto [above, below, t] = rows;
+  return (1 - t) * ((1 - s) * cells(left, above) + s * cells(right, above)) +
+         t * ((1 - s) * cells(left, below) + s * cells(right, below));
+}
 
 /// Bilinear upsampling of a map of cells to pixels, row by row. Fastest from top to bottom: each row of cells is then
 /// interpolated along the row only once.

@@ -139,13 +139,14 @@ void fill_damage(const Segmentation& segmentation, std::size_t k, const Image<fl
   const float sign = sign_of(candidate.kind);
   const PixelBox box = pixel_box(candidate, cells);
   for (int v = box.v0; v <= box.v1; ++v) {
+    const LinearTaps rows = linear_taps(v, cells.factor, interpolated.height());
     for (int u = box.u0; u <= box.u1; ++u) {
       if (result.ids(u, v) != id) continue;
       result.road(u, v) = 255;
       float& depth = result.depth(u, v);
       const bool is_gap = segmentation.depth_cells.valid(u / cells.factor, v / cells.factor) == 0;
       if (sign * depth >= candidate.level && !is_gap) continue;
-      const float inside = interpolate_bilinear(interpolated, cells.factor, u, v);
+      const float inside = interpolate_bilinear(interpolated, cells.factor, u, rows);
       if (std::isnan(depth) || is_gap || sign * inside > candidate.level) depth = inside;
     }
   }
