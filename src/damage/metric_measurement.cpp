@@ -32,13 +32,6 @@ struct MetricSums {
   double three_quarters_m2 = 0;            ///< area deeper than three quarters of it
 };
 
-/// Whether the pixel has a 4-neighbour outside its damage.
-bool is_on_rim(const Image<std::uint16_t>& ids, int u, int v) {
-  const std::uint16_t id = ids(u, v);
-  return u == 0 || v == 0 || u + 1 == ids.width() || v + 1 == ids.height() || ids(u - 1, v) != id ||
-         ids(u + 1, v) != id || ids(u, v - 1) != id || ids(u, v + 1) != id;
-}
-
 /// Values of neighbouring pixels of a row, computed together.
 struct PixelValues {
   static constexpr int max_count = 32;
@@ -78,12 +71,12 @@ MetricSums sum_pixels(const DamageInput& input, const FrameGeometry& geometry, c
                       const Damage& damage, double offset, double max_depth_m) {
   MetricSums sums;
   PixelValues values;
-  const auto add_pixel = [&](int u, int v, std::size_t k) {
+  const auto add_pixel = [&](int u, int v, std::size_t k, bool is_on_rim) {
     const double area = values.area[k];
     const Point road{values.x[k], values.y[k], values.z[k]};
     sums.area += area;
-    if (values.depth_share[k] > 0.25) sums.quarter_m2 += area;
-    if (values.depth_share[k] > 0.75) sums.three_quarters_m2 += area;
+    sums.quarter_m2 += values.depth_share[k] > 0.25 ? area : 0;
+    sums.three_quarters_m2 += values.depth_share[k] > 0.75 ? area : 0;
     sums.volume += values.volume[k];
     for (std::size_t axis = 0; axis < 3; ++axis) sums.centroid[axis] += area * road[axis];
     sums.metres_per_pixel += values.metres_per_pixel[k];
@@ -91,17 +84,25 @@ MetricSums sum_pixels(const DamageInput& input, const FrameGeometry& geometry, c
       sums.variance += static_cast<double>(input.sigma(u, v)) * input.sigma(u, v);
       ++sums.sigma_pixels;
     }
-    if (!is_on_rim(maps.ids, u, v)) return;
+    if (!is_on_rim) return;
     const Point on_road = geometry.axes().to_road(road);
     if (std::isfinite(on_road[0] + on_road[1])) sums.rim.push_back({on_road[0], on_road[1]});
     sums.perimeter += std::sqrt(area);
   };
   const auto& [u0, v0, u1, v1] = damage.box_px;
   for_each_run(maps.ids, damage.id, {u0, v0, u1, v1}, [&](int v, int first, int last) {
+    // A pixel of the rim has a 4-neighbour outside its damage.
+    const int bottom = maps.ids.height() - 1;
+    const bool at_border = v == 0 || v == bottom;
+    const std::uint16_t* const above = maps.ids.row(std::max(v - 1, 0));
+    const std::uint16_t* const below = maps.ids.row(std::min(v + 1, bottom));
+    const auto is_on_rim = [&](int u) {
+      return u == first || u == last || at_border || above[u] != damage.id || below[u] != damage.id;
+    };
     for (int u = first; u <= last; u += PixelValues::max_count) {
       const int count = std::min(last + 1 - u, PixelValues::max_count);
       compute_values(geometry, maps, offset, sign_of(damage.kind) * max_depth_m, u, v, count, values);
-      for (int i = 0; i < count; ++i) add_pixel(u + i, v, static_cast<std::size_t>(i));
+      for (int i = 0; i < count; ++i) add_pixel(u + i, v, static_cast<std::size_t>(i), is_on_rim(u + i));
     }
   });
   return sums;

@@ -16,10 +16,11 @@ class RectifiedRightImage {
   static constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
   RectifiedRightImage(ImageView<const std::int16_t> image, const Misalignment& misalignment)
-      : image_(image), misalignment_(misalignment) {}
+      : image_(image), misalignment_(misalignment), is_aligned_(misalignment.is_zero()) {}
 
   /// Row in which row v is found at column x.
   int row(double x, int v) const {
+    if (is_aligned_) return v;
     const double row = std::clamp(v + misalignment_.rows_at(x, v), 0.0, image_.height() - 1.0);
     return static_cast<int>(row + 0.5);  // NOLINT(bugprone-incorrect-roundings): not negative, and lround is a call
   }
@@ -50,6 +51,7 @@ class RectifiedRightImage {
 
   ImageView<const std::int16_t> image_;
   Misalignment misalignment_;
+  bool is_aligned_;
 };
 
 }  // namespace roadstereo
