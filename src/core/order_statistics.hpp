@@ -72,10 +72,15 @@ auto lower_quantile(Values&& values, double share) {
   return select_rank(values, static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1)));
 }
 
+/// Rank of a quantile of n ≥ 1 values rounded to the nearest, round(share · (n − 1)), 0 ≤ share ≤ 1.
+inline std::size_t nearest_rank(double share, std::size_t n) {
+  return static_cast<std::size_t>(std::lround(share * static_cast<double>(n - 1)));
+}
+
 /// Quantile with the rank rounded to the nearest, x(round(share · (n − 1))), 0 ≤ share ≤ 1.
 template <class Values>
 auto nearest_quantile(Values&& values, double share) {
-  return select_rank(values, static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1))));
+  return select_rank(values, static_cast<std::ptrdiff_t>(nearest_rank(share, values.size())));
 }
 
 /// Smallest value that a share of the values does not exceed, x(max(⌈share · n⌉, 1) − 1), 0 ≤ share ≤ 1.

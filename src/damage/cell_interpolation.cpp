@@ -20,15 +20,18 @@ void RowUpsampler::interpolate_row(int row, InterpolatedRow& result) const {
   // Away from the border every cell has the same weights.
   const int whole = std::min(width_ / factor_, cells_.width()) - 1;
   const int first = std::min(factor_, width_), last = std::max(first, whole * factor_);
-  for (int i = 0; i + 1 < whole && factor_ == 2; ++i) {  // the loop is vectorised
-    values[2 * i + 2] = 0.25F * cells[i] + 0.75F * cells[i + 1];
-    values[2 * i + 3] = 0.75F * cells[i + 1] + 0.25F * cells[i + 2];
-  }
-  for (int k = 0; k < factor_ && whole > 1 && factor_ != 2; ++k) {
-    const auto [left, right, weight] = linear_taps(factor_ + k, factor_, cells_.width());
-    const float *const one = cells + left, *const other = cells + right;
+  if (factor_ == 2) {  // of most images; both pixels of a cell together are a loop of vectors
     for (int i = 0; i + 1 < whole; ++i) {
-      values[factor_ + k + i * factor_] = (1 - weight) * one[i] + weight * other[i];
+      values[2 * i + 2] = 0.25F * cells[i] + 0.75F * cells[i + 1];
+      values[2 * i + 3] = 0.75F * cells[i + 1] + 0.25F * cells[i + 2];
+    }
+  } else {
+    for (int k = 0; k < factor_ && whole > 1; ++k) {
+      const auto [left, right, weight] = linear_taps(factor_ + k, factor_, cells_.width());
+      const float *const one = cells + left, *const other = cells + right;
+      for (int i = 0; i + 1 < whole; ++i) {
+        values[factor_ + k + i * factor_] = (1 - weight) * one[i] + weight * other[i];
+      }
     }
   }
   for (int u = 0; u < first; ++u) interpolate(u);

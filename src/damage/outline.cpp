@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/binned_selection.hpp"
+#include "core/order_statistics.hpp"
 #include "damage/contours.hpp"
 #include "damage/morphology.hpp"
 #include "damage/neighbours.hpp"
@@ -153,7 +154,7 @@ float floor_of(std::vector<float> depths) {
   const auto upper_quartile = [&] {
     const auto [low, high] = range_of(depths);
     selection.bin(depths, low, high);
-    return selection.select(static_cast<std::size_t>(std::lround(0.75 * static_cast<double>(depths.size() - 1))));
+    return selection.select(nearest_rank(0.75, depths.size()));
   };
   float floor = upper_quartile();
   for (int k = 0; k < iterations; ++k) {
