@@ -48,6 +48,7 @@ void check_matrix(const std::array<double, 9>& k, int width, const std::string& 
   if (k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
     fail(source, ": ", name, " is not a camera matrix; it must be upper triangular and end with 1");
   }
+  if (k[1] != 0) fail(source, ": ", name, "[1] is ", k[1], "; it must be 0, since skewed pixels are not supported");
 }
 
 void check_distortion(const std::vector<double>& d, bool fisheye, const std::string& source, const std::string& name) {
@@ -70,7 +71,7 @@ bool needs_no_rectification(const StereoRig& rig) {
     if (!zero((k[i] - rig.right_matrix[i]) / k[0])) return false;
     if (!zero(rig.rotation[i] - (i % 4 == 0 ? 1.0 : 0.0))) return false;
   }
-  return !rig.fisheye && zero((k[4] - k[0]) / k[0]) && zero(k[1] / k[0]) && all_zero(rig.left_distortion) &&
+  return !rig.fisheye && zero((k[4] - k[0]) / k[0]) && all_zero(rig.left_distortion) &&
          all_zero(rig.right_distortion) && zero(rig.translation_m[1]) && zero(rig.translation_m[2]) &&
          rig.translation_m[0] < 0;
 }
@@ -83,6 +84,18 @@ void check_rectified(const StereoCalibration& calibration, const std::string& so
   check_finite(calibration.cy_px, source, names.cy);
   check_finite(calibration.disparity_offset_px, source, "the disparity offset");
   check_baseline(calibration.baseline_m, source, names.baseline);
+}
+
+void check_one_projection(const std::string& source, const CameraFigures& left, const CameraFigures& right) {
+  constexpr double row_tolerance_px = 0.5;
+  if (std::abs(left.focal_px - right.focal_px) > 1e-6 * std::abs(left.focal_px)) {
+    fail(source, ": ", left.name, " has the focal length ", left.focal_px, " and ", right.name, " has ", right.focal_px,
+         "; a rectified pair has one");
+  }
+  if (std::abs(left.cy_px - right.cy_px) > row_tolerance_px) {
+    fail(source, ": ", left.name, " has the principal point's row ", left.cy_px, " and ", right.name, " has ",
+         right.cy_px, "; a rectified pair has one");
+  }
 }
 
 void check_square_pixels(double fx, double fy, const std::string& source, const std::string& matrix) {

@@ -34,7 +34,9 @@ CalibrationFile read_k_txt(const CalibrationText& file);
 
 /// Parses a finite number. Throws Error naming `path` and `key`.
 double parse_number(const std::string& path, const std::string& key, std::string_view text);
-/// Parses the side of an image, 1 … 65535 pixels. Throws Error naming `path` and `key`.
+/// The side of an image, if that is a whole number of 1 … 65535 pixels. Throws Error naming `path` and `key` if not.
+int image_side(const std::string& path, const std::string& key, double side);
+/// Parses the side of an image.
 int parse_side(const std::string& path, const std::string& key, std::string_view text);
 /// Splits text at white space and at any of `separators`.
 std::vector<std::string_view> split_words(std::string_view text, std::string_view separators = "");
@@ -63,6 +65,15 @@ struct FigureNames {
 /// Checks a rectified calibration. Throws Error if a value is not finite, or the focal length or baseline is out of
 /// range.
 void check_rectified(const StereoCalibration& calibration, const std::string& source, const FigureNames& names);
+
+/// What both cameras of a rectified pair have in common, and the name of the camera or its matrix.
+struct CameraFigures {
+  std::string name;
+  double focal_px = 0;
+  double cy_px = 0;
+};
+/// Throws Error if the focal lengths differ, or the rows of the principal points by more than half a pixel.
+void check_one_projection(const std::string& source, const CameraFigures& left, const CameraFigures& right);
 
 /// Throws Error if the focal lengths of columns and rows differ.
 void check_square_pixels(double fx, double fy, const std::string& source, const std::string& matrix);

@@ -38,8 +38,11 @@ double parse_number(const std::string& path, const std::string& key, std::string
 }
 
 int parse_side(const std::string& path, const std::string& key, std::string_view text) {
+  return image_side(path, key, parse_number(path, key, text));
+}
+
+int image_side(const std::string& path, const std::string& key, double side) {
   constexpr double max_side = 65535;
-  const double side = parse_number(path, key, text);
   if (side < 1 || side > max_side || side != std::floor(side)) {
     fail(path, ": ", key, " is ", side, "; it must be a whole number of pixels from 1 to ", max_side);
   }

@@ -36,10 +36,8 @@ void check_pair(const CameraInfo& left, const CameraInfo& right) {
          left.width, "×", left.height);
   }
   if (is_fisheye(left) != is_fisheye(right)) fail(right.source, ": distortion_model differs from ", left.source);
-  if (std::abs(left.p(0, 0) - right.p(0, 0)) > 1e-6 * left.p(0, 0)) {
-    fail(right.source, ": projection_matrix has the focal length ", right.p(0, 0), ", but ", left.source, " has ",
-         left.p(0, 0));
-  }
+  check_one_projection("projection_matrix", {left.source, left.p(0, 0), left.p(1, 2)},
+                       {right.source, right.p(0, 0), right.p(1, 2)});
 }
 
 /// Whether the images of the camera are already rectified.

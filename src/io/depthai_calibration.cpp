@@ -36,9 +36,11 @@ class DepthAiReader {
     if (!list.is_array()) fail(path_, ": ", key, " must be a list of numbers");
     std::vector<double> values;
     for (const nlohmann::json& item : list) {
-      if (!item.is_array()) values.push_back(number(item, key));
-      for (const nlohmann::json& value : item.is_array() ? item : nlohmann::json::array())
-        values.push_back(number(value, key));
+      if (item.is_array()) {
+        for (const nlohmann::json& value : item) values.push_back(number(value, key));
+      } else {
+        values.push_back(number(item, key));
+      }
     }
     return values;
   }
@@ -72,7 +74,9 @@ RigCamera read_camera(const DepthAiReader& reader, const nlohmann::json& data) {
     fail(reader.path(), ": cameraType is ", type, "; it must be 0, perspective, or 1, fisheye");
   camera.fisheye = type == 1;
   if (camera.fisheye && camera.distortion.size() > 4) camera.distortion.resize(4);
-  const auto side = [&](const char* key) { return parse_side(reader.path(), key, reader.at(data, key).dump()); };
+  const auto side = [&](const char* key) {
+    return image_side(reader.path(), key, reader.number(reader.at(data, key), key));
+  };
   camera.width = side("width");
   camera.height = side("height");
   return camera;

@@ -36,9 +36,11 @@ RigCamera read_camera(const CalibrationText& file, const YAML::Node& camera, con
   RigCamera result;
   result.matrix = camera_matrix(k[0], k[1], k[2], k[3]);
   result.fisheye = read_fisheye(file, camera);
-  result.distortion = camera[distortion] ? yaml_numbers(file, camera[distortion], distortion) : std::vector<double>{};
-  result.width = parse_side(file.path, "resolution[0]", std::to_string(size[0]));
-  result.height = parse_side(file.path, "resolution[1]", std::to_string(size[1]));
+  if (word(file, camera, "distortion_model") != "none") {
+    result.distortion = yaml_numbers(file, camera[distortion], distortion);
+  }
+  result.width = image_side(file.path, "resolution[0]", size[0]);
+  result.height = image_side(file.path, "resolution[1]", size[1]);
   return result;
 }
 

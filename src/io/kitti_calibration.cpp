@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "io/calibration_formats.hpp"
 #include "roadstereo/error.hpp"
 
@@ -24,6 +22,7 @@ Projection read_projection(const CalibrationText& file, const std::vector<KeyLin
   for (std::size_t i = 0; i < p.size(); ++i) {
     p[i] = parse_number(file.path, key + "[" + std::to_string(i) + "]", words[i]);
   }
+  if (p[1] != 0) fail(file.path, ": ", key, "[1] is ", p[1], "; the pixels of a rectified pair are not skewed: 0");
   return p;
 }
 
@@ -53,19 +52,6 @@ void read_size(const CalibrationText& file, const std::vector<KeyLine>& lines, c
   calibration.height = parse_side(file.path, key, words[1]);
 }
 
-void check_pair(const CalibrationText& file, const PairNames& names, const Projection& left, const Projection& right) {
-  constexpr double row_tolerance_px = 0.5;
-  if (std::abs(left[0] - right[0]) > 1e-6 * std::abs(left[0])) {
-    fail(file.path, ": ", names.left, " has the focal length ", left[0], " and ", names.right, " has ", right[0],
-         "; a rectified pair has one");
-  }
-  if (std::abs(left[6] - right[6]) > row_tolerance_px) {
-    fail(file.path, ": ", names.left, " has the principal point's row ", left[6], " and ", names.right, " has ",
-         right[6], "; a rectified pair has one");
-  }
-  check_square_pixels(left[0], left[5], file.path, names.left);
-}
-
 }  // namespace
 
 CalibrationFile read_kitti(const CalibrationText& file) {
@@ -83,7 +69,8 @@ CalibrationFile read_kitti(const CalibrationText& file) {
   check_rectified(
       calibration, file.path,
       {names.left + "[0]", names.left + "[2]", names.left + "[6]", names.left + "[3] and " + names.right + "[3]"});
-  check_pair(file, names, left, right);
+  check_one_projection(file.path, {names.left, left[0], left[6]}, {names.right, right[0], right[6]});
+  check_square_pixels(left[0], left[5], file.path, names.left);
   return {"KITTI " + names.left + "/" + names.right, calibration, std::nullopt};
 }
 

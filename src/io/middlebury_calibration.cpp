@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "io/calibration_formats.hpp"
 #include "roadstereo/error.hpp"
 
@@ -51,9 +49,7 @@ CalibrationFile read_middlebury(const CalibrationText& file) {
   check_rectified(calibration, file.path,
                   {"cam0[0]", "cam0[2]", "cam0[5]", "\"baseline\", which this format gives in millimetres"});
   check_square_pixels(left[0], left[4], file.path, "cam0");
-  if (std::abs(left[0] - right[0]) > 1e-6 * left[0]) {
-    fail(file.path, ": cam0 has the focal length ", left[0], " and cam1 has ", right[0], "; a rectified pair has one");
-  }
+  check_one_projection(file.path, {"cam0", left[0], left[5]}, {"cam1", right[0], right[5]});
   return {"Middlebury", calibration, std::nullopt};
 }
 

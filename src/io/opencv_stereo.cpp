@@ -13,8 +13,8 @@ namespace {
 /// Top-level entries of one file, or of two files that complete each other.
 class Storage {
  public:
-  Storage(const CalibrationText& file, const CalibrationText* second) : path_(file.path) {
-    entries_ = parse_opencv_file(file);
+  Storage(const CalibrationText& file, const CalibrationText* second)
+      : path_(second == nullptr ? file.path : file.path + " and " + second->path), entries_(parse_opencv_file(file)) {
     if (second != nullptr) entries_.merge(parse_opencv_file(*second));
   }
 
@@ -139,8 +139,7 @@ bool read_fisheye(const Storage& storage) {
   fail(storage.path(), ": ", key, " is ", entry->words[0], "; it must be radtan or equidistant (fisheye)");
 }
 
-StereoRig read_rig(const CalibrationText& file, const CalibrationText* second) {
-  const Storage storage(file, second);
+StereoRig read_rig(const Storage& storage) {
   StereoRig rig;
   rig.left_matrix = read_matrix<9>(storage, {"K1", "M1"});
   rig.right_matrix = read_matrix<9>(storage, {"K2", "M2"});
@@ -158,7 +157,8 @@ StereoRig read_rig(const CalibrationText& file, const CalibrationText* second) {
 }  // namespace
 
 CalibrationFile read_opencv_stereo(const CalibrationText& file, const CalibrationText* second) {
-  return describe_rig(read_rig(file, second), "OpenCV stereo", file.path);
+  const Storage storage(file, second);
+  return describe_rig(read_rig(storage), "OpenCV stereo", storage.path());
 }
 
 }  // namespace roadstereo::io

@@ -12,6 +12,7 @@ namespace {
 double number(const CalibrationText& file, const nlohmann::json& root, const std::string& key) {
   if (!root.contains(key)) fail(file.path, ": ", key, " is missing");
   const nlohmann::json& value = root[key];
+  if (!value.is_string() && !value.is_number()) fail(file.path, ": ", key, " must be a number");
   return parse_number(file.path, key, value.is_string() ? value.get<std::string>() : value.dump());
 }
 
@@ -36,8 +37,8 @@ CalibrationFile read_realsense(const CalibrationText& file) {
     rig.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     rig.translation_m = {-baseline_m, 0, 0};
     const std::string name = "rectified." + std::to_string(i);
-    rig.width = parse_side(file.path, name + ".width", std::to_string(value("width")));
-    rig.height = parse_side(file.path, name + ".height", std::to_string(value("height")));
+    rig.width = image_side(file.path, name + ".width", value("width"));
+    rig.height = image_side(file.path, name + ".height", value("height"));
     check_rig(rig, file.path);
     result.rigs.push_back(rig);
   }

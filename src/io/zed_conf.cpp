@@ -79,11 +79,15 @@ RigCamera read_camera(const IniFile& file, const std::string& section, const Res
 cv::Matx44d left_to_right(const IniFile& file, const std::string& resolution) {
   constexpr double mm = 1e-3;
   const auto value = [&](const std::string& name) {
+    const std::string key = "stereo:" + name, of_resolution = key + "_" + resolution;
+    return file.number(file.has(of_resolution) || !file.has(key) ? of_resolution : key);
+  };
+  const auto or_zero = [&](const std::string& name) {
     const std::string key = "stereo:" + name;
     return file.number_or(key + "_" + resolution, file.number_or(key, 0));
   };
   const cv::Vec3d turn(value("rx"), value("cv"), value("rz"));
-  const cv::Vec3d position(file.number("stereo:baseline"), value("ty"), value("tz"));
+  const cv::Vec3d position(file.number("stereo:baseline"), or_zero("ty"), or_zero("tz"));
   return cv::Affine3d(turn, -mm * position).matrix;
 }
 

@@ -99,6 +99,7 @@ TEST_F(ReadCalibration, RejectsBadKitti) {
   expect_refused("P2: 1 2 3\nP3: 1 2 3\n", "P2 has 3 values; it must have 12");
   expect_refused(replaced(kitti, "7.215377e+02", "nan"), "P2[0] is nan");
   expect_refused(replaced(kitti, "7.215377e+02", "x"), "P2[0] is \"x\"");
+  expect_refused(replaced(kitti, "0.000000e+00", "9"), "P2[1] is 9");
   expect_refused(replaced(kitti, "7.215377e+02", "800"), "P3 has 721.5377");
   expect_refused(replaced(kitti, "-3.395242e+02", "4.485728e+01"), "the baseline is 0;");
   expect_refused(replaced(kitti, "-3.395242e+02", "4.485728e+02"), "swapped");
@@ -119,6 +120,7 @@ TEST_F(ReadCalibration, MiddleburyIsInMillimetres) {
   EXPECT_EQ(c.width, 741);
   EXPECT_EQ(c.height, 497);
   EXPECT_NEAR(rectified(replaced(middlebury, " doffs= 32.778 \n", "")).disparity_offset_px, 32.778, 1e-9);
+  expect_refused(replaced(middlebury, "252.932; 0 0 1]", "262.932; 0 0 1]"), "the principal point's row");
   expect_refused(replaced(middlebury, "193.001", "0.193"), "the baseline is 0.000193;");
   expect_refused(replaced(middlebury, "baseline", "base"), "baseline is missing");
   expect_refused(replaced(middlebury, "294.182", "inf"), "cam0[2] is inf");

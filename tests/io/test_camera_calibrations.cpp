@@ -116,6 +116,9 @@ TEST_F(CameraCalibration, ReadsKalibrCamchain) {
   EXPECT_TRUE(read_calibration(write(fisheye)).rig->fisheye);
   expect_refused(replaced(kalibr, "radtan", "equidistant"), "the lens models of the cameras differ");
   expect_refused(replaced(kalibr, "radtan", "fov"), "distortion_model is fov");
+  expect_refused(replaced(kalibr, "distortion_coeffs", "distortion_coefficients"), "distortion_coeffs");
+  const std::string none = replaced(kalibr, "  distortion_coeffs: [0.01, -0.02, 0.002, -0.0009]\n", "");
+  EXPECT_TRUE(read_calibration(write(replaced(none, "radtan", "none"))).rig->left_distortion.empty());
   expect_refused(replaced(kalibr, "pinhole", "ds"), "camera_model is ds");
   expect_refused(replaced(kalibr, "cam0", "cam9"), "cam0 is missing");
   expect_refused(replaced(kalibr, "[386.8, 388.2, 317.0, 241.8]", "[386.8]"), "intrinsics has 1 values");
@@ -136,7 +139,7 @@ std::string zed_cameras(const std::string& resolution, double scale) {
 }
 const std::string zed_stereo =
     "[STEREO]\r\nBaseline=119.905\r\nTY=0.0458908\r\nTZ=-0.467919\r\nCV_HD=0.00697667\r\nRX_HD=0.00239722\r\n"
-    "RZ_HD=-0.0021326\r\nCV_VGA=0.00697667\r\nTZ_VGA=-0.5\r\n[MISC]\r\nSensor_ID=0\r\n";
+    "RZ_HD=-0.0021326\r\nCV_VGA=0.00697667\r\nRX_VGA=0\r\nRZ_VGA=0\r\nTZ_VGA=-0.5\r\n[MISC]\r\nSensor_ID=0\r\n";
 
 TEST_F(CameraCalibration, ReadsZedConfByResolution) {
   const std::string text = zed_cameras("HD", 1) + zed_cameras("VGA", 0.5) + zed_stereo;
@@ -163,6 +166,7 @@ TEST_F(CameraCalibration, ReadsZedConfByResolution) {
   expect_refused(replaced(text, "cx=652.800000", "cz=1"), "left_cam_hd:cx is missing");
   expect_refused(replaced(text, "Baseline=119.905", "Baseline=x"), "stereo:baseline is \"x\"");
   expect_refused(replaced(text, "Baseline=119.905", "Baseline=0.1199"), "the baseline is 0.000");
+  expect_refused(replaced(text, "CV_HD", "CW_HD"), "stereo:cv_hd is missing");
   expect_refused("[LEFT_CAM_8K]\nfx=1\n", "no camera of a known resolution");
 }
 
@@ -201,6 +205,8 @@ TEST_F(CameraCalibration, ReadsDepthAi) {
   expect_values(from_right.rig->rotation, {1, 0, 0, 0, 0.8, 0.6, 0, -0.6, 0.8});
   expect_values(from_right.rig->translation_m, {0.0758, -0.00016, -0.00038});
   expect_refused(depthai.substr(0, depthai.size() - 1), "invalid JSON");
+  const std::string nested = std::string(200000, '[') + std::string(200000, ']');
+  expect_refused(replaced(depthai, "[-5.5, 16.9,", "[" + nested + ", 16.9,"), "distortionCoeff must be a number");
   expect_refused(replaced(depthai, "\"toCameraSocket\": 2", "\"toCameraSocket\": 7"), "no extrinsics between");
   expect_refused(replaced(depthai, "\"leftCameraSocket\": 1", "\"leftCameraSocket\": 5"), "no camera of socket 5");
   expect_refused(replaced(depthai, "799.7", "\"x\""), "intrinsicMatrix must be a number");

@@ -66,6 +66,8 @@ TEST_F(RealSenseCalibration, BadValueIsSentence) {
   expect_refused(replaced(realsense, "\"428.72\"", "\"wide\""), "rectified.1.fx is \"wide\"");
   expect_refused(replaced(realsense, "\"848\"", "\"848.5\""), "rectified.1.width is 848.5");
   expect_refused(replaced(realsense, "{", "{\"x\": ,"), "invalid JSON");
+  const std::string nested = std::string(200000, '[') + std::string(200000, ']');
+  expect_refused(replaced(realsense, "\"-49.9496\"", nested), "baseline must be a number");
   expect_refused("{\"baseline\": -50, \"rectified.0.fx\": 0, \"rectified.0.width\": 9, \"rectified.0.height\": 9}",
                  "no size of the images");
 }

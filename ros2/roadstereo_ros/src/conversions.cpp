@@ -75,7 +75,7 @@ roadstereo::FrameView frame_view(const sensor_msgs::msg::Image& image) {
 
 roadstereo::StereoCalibration stereo_calibration(const sensor_msgs::msg::CameraInfo& left,
                                                  const sensor_msgs::msg::CameraInfo& right) {
-  // P = (f 0 cx Tx; 0 f cy 0; 0 0 1 0), of the right camera Tx = −f·baseline.
+  // P = (f 0 cx Tx; 0 f cy 0; 0 0 1 0), of the right camera Tx = −f·x, x the place of the camera: 0 of most left ones.
   const double f = right.p[0];
   if (!(f > 0) || left.p[0] != f || left.p[5] != f || right.p[5] != f || left.p[6] != right.p[6]) {
     roadstereo::fail("the camera_info are not those of rectified images: P[0] is ", left.p[0], " and ", f, ", P[6] ",
@@ -85,7 +85,7 @@ roadstereo::StereoCalibration stereo_calibration(const sensor_msgs::msg::CameraI
   calibration.focal_px = f;
   calibration.cx_px = left.p[2];
   calibration.cy_px = left.p[6];
-  calibration.baseline_m = -right.p[3] / f;
+  calibration.baseline_m = (left.p[3] - right.p[3]) / f;
   calibration.disparity_offset_px = right.p[2] - left.p[2];
   calibration.width = static_cast<int>(left.width);
   calibration.height = static_cast<int>(left.height);
