@@ -88,7 +88,9 @@ Ticks round_ticks(double lowest, double highest, int max_count) {
   }
   Ticks ticks{{}, decimals};
   const double first = std::ceil(lowest / step - 1e-9);
-  for (double i = first; i * step <= highest + 1e-9 * span; ++i) ticks.values.push_back(i * step);
+  for (int k = 0; k <= max_count && (first + k) * step <= highest + 1e-9 * span; ++k) {  // step may be below rounding
+    ticks.values.push_back((first + k) * step);
+  }
   return ticks;
 }
 

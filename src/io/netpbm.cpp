@@ -41,8 +41,13 @@ class Words {
     return value;
   }
 
-  /// Returns the samples after the single white space that ends the header.
-  Bytes rest() const { return bytes_.subspan(std::min(at_ + 1, bytes_.size())); }
+  /// Returns the `size` bytes of samples, and what follows, after the single white space that ends the header, or
+  /// after the CRLF of some writers.
+  Bytes rest(std::size_t size) const {
+    const Bytes data = bytes_.subspan(std::min(at_ + 1, bytes_.size()));
+    const bool crlf = data.size() > size && bytes_[at_] == '\r' && data[0] == '\n';
+    return crlf ? data.subspan(1) : data;
+  }
 
  private:
   void skip_space() {
@@ -82,8 +87,8 @@ void read_text_samples(const std::string& path, Words& words, const NetpbmHeader
 
 /// The file has as many bytes as the frame.
 void read_binary_samples(const Words& words, Frame& frame) {
-  const Bytes data = words.rest();
   const std::size_t size = frame.bytes.size();
+  const Bytes data = words.rest(size);
   if (frame.sample == SampleType::u8) {
     std::memcpy(frame.bytes.data(), data.data(), size);
     return;
@@ -106,11 +111,6 @@ float float_at(const std::uint8_t* bytes, bool little_endian) {
     bits |= static_cast<std::uint32_t>(bytes[i]) << (8U * (little_endian ? i : 3 - i));
   }
   return std::bit_cast<float>(bits);
-}
-
-/// Some writers end the last line of the header with CRLF.
-Bytes without_line_feed(Bytes data, std::size_t size) {
-  return data.size() > size && data[0] == '\n' ? data.subspan(1) : data;
 }
 
 }  // namespace
@@ -147,9 +147,10 @@ Frame read_netpbm(const std::string& path, Bytes bytes) {
   frame.order = header.channels == 3 ? ChannelOrder::rgb : ChannelOrder::grey;
   frame.sample = header.white > 255 ? SampleType::u16 : SampleType::u8;
   const std::size_t size = static_cast<std::size_t>(frame.view().stride_bytes) * static_cast<std::size_t>(frame.height);
-  if (!header.text && words.rest().size() < size) {  // before memory is taken
-    fail(path, ": the file is truncated: ", size, " bytes of samples are expected, but there are ",
-         words.rest().size());
+  const std::size_t samples = size / (frame.sample == SampleType::u16 ? 2 : 1);
+  const std::size_t least = header.text ? 2 * samples - 1 : size;        // a digit and white space between two
+  if (const std::size_t left = words.rest(size).size(); left < least) {  // before memory is taken
+    fail(path, ": the file is truncated: ", least, " bytes of samples are expected, but there are ", left);
   }
   frame.bytes.resize(size);
   if (header.text) {
@@ -173,7 +174,7 @@ Image<float> read_pfm(const std::string& path, Bytes bytes) {
   }
   const std::size_t row_bytes = static_cast<std::size_t>(width) * sizeof(float);
   const std::size_t size = row_bytes * static_cast<std::size_t>(height);
-  const Bytes data = without_line_feed(words.rest(), size);
+  const Bytes data = words.rest(size);
   if (data.size() < size) {
     fail(path, ": the file is truncated: ", size, " bytes of values are expected, but there are ", data.size());
   }

@@ -108,7 +108,11 @@ SeverityScheme read_severity_scheme(const std::string& name) {
     if (!item.second.IsMap()) fail(name, ": ", key, " must be a map with unit, depth_mm and severity");
     scheme.tables.push_back(table_of(distress, {std::string(name).append(": ").append(key), item.second}));
   }
-  scheme.validate();
+  try {
+    scheme.validate();
+  } catch (const Error& error) {
+    fail(name, ": ", error.what());
+  }
   return scheme;
 }
 

@@ -34,7 +34,7 @@ PlotRange plot_range(ImageView<const float> disparity) {
 /// quantised disparities.
 cv::Mat count_pixels(ImageView<const float> disparity, const PlotRange& range, cv::Size plot) {
   const double span = range.high_px - range.low_px;
-  const int columns = std::clamp(static_cast<int>(8 * span), 1, plot.width);
+  const int columns = static_cast<int>(std::clamp(8 * span, 1.0, static_cast<double>(plot.width)));
   const int rows = std::min(plot.height, range.rows);
   cv::Mat counts = cv::Mat::zeros(rows, columns, CV_32FC1);
   for (int v = 0; v < range.rows; ++v) {

@@ -256,7 +256,7 @@ TEST_F(ImageFile, RejectsTruncatedJpegTiffAndNetpbm) {
                        "truncated");
   expect_frame_refused(write("a.pgm", "P5 32 32 255\nabc"), "truncated");
   expect_frame_refused(write("b.pgm", "P2 32 32 255\n1 2 3"), "truncated");
-  expect_frame_refused(write("c.pgm", "P2 32 32 255\n1 2 x"), "a sample is \"x\"");
+  expect_frame_refused(write("c.pgm", "P2 32 32 255\n1 2 x" + std::string(2048, ' ')), "a sample is \"x\"");
 }
 
 /// Largest resident memory of this process since the last call, KiB.
@@ -384,6 +384,24 @@ TEST_F(ImageFile, RejectsFilesThatAreNoDisparityMap) {
   expect_disparity_refused(write("b.pfm", "PF\n3 2\n-1\nabc"), "three channels");
   expect_disparity_refused(write("c.pfm", "Pf\n3 2\n0\nabc"), "scale is 0");
   expect_disparity_refused(write("d.pfm", "Pf\n3 x\n0\nabc"), "the height is \"x\"");
+}
+
+TEST_F(ImageFile, HeaderOfNetpbmMayEndWithCrlf) {
+  std::string samples;
+  for (int i = 0; i < 32 * 32; ++i) samples += static_cast<char>(i % 251 + 1);
+  for (const char* end : {"\n", "\r\n", "\r"}) {
+    const Frame frame = read_frame(write("a.pgm", "P5 32 32 255" + std::string(end) + samples));
+    EXPECT_EQ(std::memcmp(frame.bytes.data(), samples.data(), samples.size()), 0) << "header ends with " << end[0];
+  }
+  // The first value begins with a line feed, and a byte follows the last one.
+  const std::string first("\n\0\200?", 4), second = float_bytes(2, true);
+  const Image<float> map = read_disparity(write("a.pfm", "Pf\n2 1\n-1\n" + first + second + "\n"));
+  EXPECT_EQ(map(0, 0), std::bit_cast<float>(0x3F80000AU));
+  EXPECT_EQ(map(1, 0), 2.0f);
+}
+
+TEST_F(ImageFile, TextTooShortForItsSizeTakesNoMemory) {
+  expect_frame_refused(write("a.ppm", "P3\n8192 8192\n65535\n1 2 3"), "truncated: 402653183 bytes");
 }
 
 TEST_F(ImageFile, PngKeepsColours) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "io/drawing.hpp"
 #include "io/plot.hpp"
@@ -46,6 +47,12 @@ cv::Rect area_with_legend(const std::string& name) {
 
 Panel one_curve(std::vector<double> x, std::vector<double> y) {
   return {"title", "x, px", "y, px", {{"points", std::move(x), std::move(y)}}};
+}
+
+TEST(RoundTicks, EndWhereStepsAreBelowRounding) {
+  const double lowest = 1e13, highest = 1e13 + 0.00195;
+  EXPECT_LE(round_ticks(lowest, highest, 6).values.size(), 7U);
+  EXPECT_EQ(round_ticks(0, 10, 6).values, (std::vector<double>{0, 2, 4, 6, 8, 10}));
 }
 
 TEST(Plot, MiddleOfRangesIsMiddleOfArea) {

@@ -146,8 +146,8 @@ void HttpServer::State::listen(const ServeAddress& address) {
     if (!error) break;
   }
   if (!error) return;
-  fail("cannot listen on ", url_host(address.host), ":", address.port,
-       ": the port is in use or not allowed, or the address is not local; port 0 selects a free port");
+  fail("cannot listen on ", url_host(address.host), ":", address.port, ": ", error.message(),
+       "; the port may be in use or not allowed, or the address not local; port 0 selects a free port");
 }
 
 /// Runs the handlers, again after one has thrown for lack of memory.

@@ -39,7 +39,7 @@ std::vector<TrackLine> read_track_bag(const std::string& path) {
     if (!message->error.empty()) continue;  // a gap in the track
     ++number;
     const SatelliteFix fix = read_satellite_fix(path + ": " + topic.name, message->bytes, topic.format);
-    if (!fix.valid) continue;
+    if (!fix.valid || !std::isfinite(fix.lat_deg) || !std::isfinite(fix.lon_deg)) continue;
     TrackPoint point;
     point.time_s = 1e-9 * static_cast<double>(fix.stamp_ns == 0 ? message->received_ns : fix.stamp_ns);
     point.lat_deg = fix.lat_deg;

@@ -30,12 +30,19 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   return fields;
 }
 
-/// Degrees from "ddmm.mmm" and a letter of the compass.
-double angle_of(const std::string& where, const char* name, std::string_view text, std::string_view side) {
+/// Degrees, up to `limit`, from "ddmm.mmm" and one of two letters of the compass.
+double angle_of(const std::string& where, const char* name, std::string_view text, std::string_view side,
+                std::string_view letters, double limit) {
   const double value = parse_number(where, name, text);
-  const double degrees = std::floor(value / 100);
-  const double angle = degrees + (value - 100 * degrees) / 60;
-  return side == "S" || side == "W" ? -angle : angle;
+  const double degrees = std::floor(value / 100), minutes = value - 100 * degrees;
+  const double angle = degrees + minutes / 60;
+  if (!(value >= 0 && minutes < 60 && angle <= limit)) {
+    fail(where, ": the ", name, " is ", text, "; it must be degrees and minutes up to ", limit, "°");
+  }
+  if (side.size() != 1 || letters.find(side) == std::string_view::npos) {
+    fail(where, ": the side of the ", name, " is \"", side, "\"; it must be ", letters[0], " or ", letters[1]);
+  }
+  return side[0] == letters[1] ? -angle : angle;
 }
 
 /// Seconds of the day from "hhmmss.sss".
@@ -91,8 +98,8 @@ class NmeaReader {
     TrackPoint point;
     last_second_ = second_of_day(where, fields[1]);
     point.time_s = day_s(where, fields[9]) + last_second_;
-    point.lat_deg = angle_of(where, "latitude", fields[3], fields[4]);
-    point.lon_deg = angle_of(where, "longitude", fields[5], fields[6]);
+    point.lat_deg = angle_of(where, "latitude", fields[3], fields[4], "NS", 90);
+    point.lon_deg = angle_of(where, "longitude", fields[5], fields[6], "EW", 180);
     constexpr double metres_per_second = 1852.0 / 3600;  // of a knot
     const bool moves =
         fields[7].empty() || parse_number(where, "speed", fields[7]) * metres_per_second >= min_course_m_s;

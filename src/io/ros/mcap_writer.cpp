@@ -16,6 +16,8 @@
 namespace roadstereo::io {
 namespace {
 
+constexpr std::uint64_t max_record_bytes = std::uint64_t{1} << 62U;  ///< offsets do not overflow
+
 std::vector<std::uint8_t> schema_records(std::span<const RosTopic> topics) {
   McapBytes records;
   for (std::size_t i = 0; i < topics.size(); ++i) {
@@ -141,6 +143,7 @@ bool McapWriter::take_chunk() {
   chunk.first_ns = fields.value<std::uint64_t>();
   chunk.last_ns = fields.value<std::uint64_t>();
   chunk.bytes = fields.value<std::uint64_t>();
+  if (chunk.length < head_bytes || chunk.length > max_record_bytes) return false;
   chunk.packed_bytes = chunk.length - head_bytes;
   const std::uint64_t end = take_message_indexes(chunk);
   if (chunk.message_indexes.empty()) return false;
@@ -160,6 +163,7 @@ std::uint64_t McapWriter::take_message_indexes(Chunk& chunk) const {
     if (head.size() < head_bytes || McapOpcode{head[0]} != McapOpcode::message_index) break;
     McapFields fields(file_, std::span(head).subspan(1));
     const std::uint64_t length = mcap_head_bytes + fields.value<std::uint64_t>();
+    if (length < head_bytes || length > max_record_bytes) break;
     const auto topic = fields.value<std::uint16_t>();
     chunk.message_indexes[topic] = at;
     chunk.messages[topic] = fields.value<std::uint32_t>() / entry_bytes;

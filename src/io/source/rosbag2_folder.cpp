@@ -94,14 +94,21 @@ class Rosbag2Folder final : public MessageLog {
   }
 
   void open(const std::string& file) {
-    unpacked_.reset();
     if (!fs::is_regular_file(file)) fail(file, ": the file does not exist, or is not a regular file");
-    if (packed_files_) {
+    if (packed_files_ && file != unpacked_file_) {
       unpacked_ = std::make_unique<TemporaryFile>();
       decompress_zstd_file(file, unpacked_->path());
+      unpacked_file_ = file;
     }
-    log_ = open_message_log(unpacked_ ? unpacked_->path() : file);
-    log_->select(selected_);
+    try {
+      log_ = open_message_log(unpacked_ ? unpacked_->path() : file);
+      log_->select(selected_);
+    } catch (const SystemError&) {
+      throw;
+    } catch (const Error& error) {
+      if (!unpacked_) throw;
+      fail(file, ", decompressed as ", error.what());
+    }
   }
 
   LoggedMessage unpacked(LoggedMessage message) const {
@@ -123,7 +130,8 @@ class Rosbag2Folder final : public MessageLog {
   std::vector<BagTopic> topics_;
   std::vector<std::string> selected_;
   std::size_t next_file_ = 0;
-  std::unique_ptr<TemporaryFile> unpacked_;  // outlives the log
+  std::string unpacked_file_;
+  std::unique_ptr<TemporaryFile> unpacked_;  // of that file; outlives the log
   std::unique_ptr<MessageLog> log_;
 };
 

@@ -450,6 +450,17 @@ std::string nmea_line(const std::string& body) {
   return line;
 }
 
+TEST_F(TrackFile, NmeaPositionOutsideOfEarthIsRefused) {
+  const auto fix = [](const std::string& position, const char* second = "19") {
+    return nmea_line(std::string("GPRMC,1235") + second + ",A," + position + ",022.4,084.4,230394,003.1,W");
+  };
+  EXPECT_EQ(points(fix("9000.000,S,18000.000,W") + fix("4807.038,N,01131.000,E", "20")).size(), 2U);
+  expect_refused(fix("9930.000,N,01131.000,E"), "the latitude is 9930.000");
+  expect_refused(fix("4860.000,N,01131.000,E"), "the latitude is 4860.000");
+  expect_refused(fix("4807.038,,01131.000,E"), "the side of the latitude is \"\"");
+  expect_refused(fix("4807.038,N,01131.000,N"), "the side of the longitude is \"N\"");
+}
+
 // A receiver that stands still tells any course. 0.5 m/s are 0.972 knots.
 TEST_F(TrackFile, CourseOfStandingReceiverIsNoHeading) {
   std::string nmea;
