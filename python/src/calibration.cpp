@@ -108,9 +108,9 @@ std::pair<py::array, py::array> rectify(const io::Rectifier& rectifier, const py
 void bind_rectifier(py::module_& module) {
   py::class_<io::Rectifier>(module, "Rectifier",
                             "Undistorts and rectifies pairs of one rig. The pixel maps are computed once.")
-      .def(py::init<const io::StereoRig&, int, int>(), py::arg("rig"), py::arg("width"), py::arg("height"),
-           py::call_guard<py::gil_scoped_release>(),
-           "Compute the maps for frames of this size, pixels.\n\n"
+      .def(py::init<const io::StereoRig&, int, int, int>(), py::arg("rig"), py::arg("width"), py::arg("height"),
+           py::arg("threads") = 0, py::call_guard<py::gil_scoped_release>(),
+           "Compute the maps for frames of this size, pixels. threads: worker threads; 0: all cores.\n\n"
            "Raises Error if the rig has another size, or if its right camera is not to the right of the left one.")
       .def_property_readonly("calibration", &io::Rectifier::calibration, "Calibration of the rectified pairs.")
       .def("rectify", &rectify, py::arg("left"), py::arg("right"), py::arg("order") = "bgr",

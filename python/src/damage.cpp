@@ -153,7 +153,7 @@ void bind_damage_map(py::module_& module) {
 std::unique_ptr<DamageMap> find_damage_of(const ProcessedFrame& frame, const py::object& options,
                                           const py::kwargs& keywords) {
   PipelineOptions all = frame.options;
-  set_options(all, options, keywords);
+  set_damage_options(all, options, keywords, true);
   auto map = std::make_unique<DamageMap>();
   const py::gil_scoped_release release;
   all.validate();

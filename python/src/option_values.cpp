@@ -1,5 +1,6 @@
 #include "option_values.hpp"
 
+#include "roadstereo/error.hpp"
 #include "roadstereo/options.hpp"
 #include "type_name.hpp"
 
@@ -18,7 +19,8 @@ std::string option_text(const std::string& key, py::handle value) {
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
   if (is_bool(value)) return value.cast<bool>() ? "true" : "false";
   const auto object = py::reinterpret_borrow<py::object>(value);
-  if (PyIndex_Check(value.ptr()) != 0) return py::str(py::int_(object));
+  if (const auto whole = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()))) return py::str(whole);
+  PyErr_Clear();  // of an array of one number, too, which claims to be whole
   if (py::hasattr(value, "__float__")) return py::repr(py::float_(py::float_(object).cast<double>()));
   throw py::type_error("the option '" + key + "' is of type " + type_name(value) +
                        "; it must be a bool, a number or a str");
@@ -50,6 +52,20 @@ py::object parsed(const OptionText& option) {
 void set_options(PipelineOptions& options, const py::object& values, const py::kwargs& keywords) {
   if (!values.is_none()) set_each(options, py::dict(values));
   set_each(options, keywords);
+}
+
+void set_damage_options(PipelineOptions& options, const py::object& values, const py::kwargs& keywords,
+                        bool with_threads) {
+  const py::dict positional = values.is_none() ? py::dict() : py::dict(values);
+  for (const py::dict& part : {positional, py::dict(keywords)}) {
+    for (const auto& [key, value] : part) {
+      const auto name = py::str(key).cast<std::string>();
+      if (name.starts_with("damage.") || (with_threads && name == "threads")) continue;
+      fail("\"", name, "\" has no effect here; find_damage accepts keys that start with damage.",
+           with_threads ? ", and threads" : "");
+    }
+  }
+  set_options(options, values, keywords);
 }
 
 py::dict option_values(const PipelineOptions& options) {

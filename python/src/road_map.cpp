@@ -122,7 +122,7 @@ std::unique_ptr<SharedRoadMap> make_road_map(const std::optional<std::filesystem
 
 std::vector<MapDamage> find_damage_in(SharedRoadMap& map, const py::object& options, const py::kwargs& keywords) {
   PipelineOptions all = preset("default");
-  set_options(all, options, keywords);
+  set_damage_options(all, options, keywords, false);
   all.validate();
   return map.find_damage(all.damage);
 }

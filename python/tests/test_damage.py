@@ -85,6 +85,11 @@ class Damage(unittest.TestCase):
             roadstereo.find_damage(result, options={"damage.min_confidense": 0})
         with self.assertRaisesRegex(roadstereo.Error, "min_confidence"):
             roadstereo.find_damage(result, options={"damage.min_confidence": 2})
+        with self.assertRaisesRegex(roadstereo.Error, "matcher.block_radius.* has no effect"):
+            roadstereo.find_damage(result, options={"matcher.block_radius": 3})
+        as_array = roadstereo.find_damage(result, options={"damage.min_confidence": np.array(0.3)})
+        as_number = roadstereo.find_damage(result, options={"damage.min_confidence": 0.3})
+        self.assertEqual(len(as_array.damages), len(as_number.damages))
         with self.assertRaises(TypeError):
             roadstereo.find_damage(result.disparity)
 
