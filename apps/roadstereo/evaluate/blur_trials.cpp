@@ -10,7 +10,6 @@
 #include "progress.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
-#include "settings.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -66,10 +65,7 @@ std::vector<BlurTrial> run_pair(const BlurredPair& blurred, const MethodSettings
   std::vector<BlurTrial> trials;
   std::optional<PerspectiveShift> shift;
   for (const char* name : presets) {
-    PipelineOptions options = preset(name);
-    options.threads = methods.threads;
-    apply_settings(methods.settings, options);
-    Pipeline pipeline(options, blurred.pair.calibration);
+    Pipeline pipeline(with_settings(preset(name), methods), blurred.pair.calibration);
     const FrameResult& result = pipeline.process(blurred.pair.left.view(), blurred.pair.right.view());
     if (!shift) shift = result.shift;
     trials.push_back(score(blurred, result.disparity));

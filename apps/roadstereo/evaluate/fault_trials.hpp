@@ -33,8 +33,7 @@ struct FaultCounts {
   std::vector<std::string> warnings;  ///< the first of each kind
 };
 
-/// Run the default preset on `pictures` pairs: the scenes of the hostile test (random seeds 1 to 8, flat, uav), each
-/// with the fault drawn anew.
+/// Run the default preset on `pictures` pairs of ten rendered roads in turn, each with the fault drawn anew.
 FaultCounts run_fault(const Fault& fault, int pictures, const MethodSettings& settings);
 
 }  // namespace roadstereo::cli

@@ -9,8 +9,8 @@
 #include "progress.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/synth.hpp"
+#include "roadstereo/warning.hpp"
 #include "scene_options.hpp"
-#include "settings.hpp"
 #include "stopwatch.hpp"
 
 namespace roadstereo::cli {
@@ -27,10 +27,7 @@ synth::Scene first_scene(const FlightOptions& options) {
 }
 
 Pipeline make_pipeline(const FlightOptions& options, const StereoCalibration& calibration) {
-  PipelineOptions pipeline_options = preset(options.preset);
-  pipeline_options.threads = options.methods.threads;
-  apply_settings(options.methods.settings, pipeline_options);
-  return Pipeline(pipeline_options, calibration);
+  return Pipeline(with_settings(preset(options.preset), options.methods), calibration);
 }
 
 /// ψ of a plane: a1 = α1 cos ψ, a2 = −α1 sin ψ.
@@ -70,7 +67,9 @@ FlightTrial run_frame(const synth::SyntheticPair& pair, std::vector<Pipeline>& p
     frame.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
     frame.tracked = compare(*result, pair);
     frame.reestimated = result->road.status != RoadStatus::tracked;
-    frame.reason = result->warnings.empty() ? "" : result->warnings.front();
+    const auto anew = std::find_if(result->warnings.begin(), result->warnings.end(),
+                                   [](const std::string& warning) { return warning_code(warning) == "road-anew"; });
+    frame.reason = anew == result->warnings.end() ? "" : *anew;
   }
   fresh.reset();
   frame.fresh = compare(fresh.process(pair.left.view(), pair.right.view()), pair);

@@ -67,16 +67,21 @@ std::size_t method_index(const std::string& name) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
+PipelineOptions with_settings(PipelineOptions options, const MethodSettings& settings) {
+  options.threads = settings.threads;
+  apply_settings(settings.settings, options);
+  options.validate();
+  return options;
+}
+
 PipelineOptions method_options(const std::string& preset_name, const MethodTask& task, const MethodSettings& settings) {
   PipelineOptions options = preset(preset_name);
-  options.threads = settings.threads;
   options.white_level = task.pair.white_level;
   if (!task.is_road) {
     options.perspective.enabled = false;
     options.perspective.disparities = task.disparities;
   }
-  apply_settings(settings.settings, options);
-  return options;
+  return with_settings(std::move(options), settings);
 }
 
 Image<float> run_method(const std::string& name, const MethodTask& task, const MethodSettings& settings) {
@@ -91,7 +96,7 @@ Image<float> run_method(const std::string& name, const MethodTask& task, const M
 MethodMaps run_methods(const MethodTask& task, const MethodSettings& settings) {
   MethodMaps all;
   for (const std::string& name : method_names(settings)) {
-    if (all.maps.size() >= presets.size()) {
+    if (!is_preset(name)) {
       all.maps.push_back(run_method(name, task, settings));
       continue;
     }

@@ -38,10 +38,13 @@ std::size_t method_index(const std::string& name);
 /// Rectified pair and its disparity range.
 struct MethodTask {
   const StereoPair& pair;
-  int disparities = 128;  ///< for OpenCV's matchers, and for the presets if the pair shows no road
+  int disparities = 128;  ///< for OpenCV's matchers, and for the presets unless `is_road`
   bool is_road = true;    ///< false: no perspective transformation
   std::string frame{};    ///< name of its files of given maps
 };
+
+/// The options with those of the command line applied. Throws Error when one is unknown or out of range.
+PipelineOptions with_settings(PipelineOptions options, const MethodSettings& settings);
 
 /// Options of a preset for the pair, with those of the command line applied.
 PipelineOptions method_options(const std::string& preset_name, const MethodTask& task, const MethodSettings& settings);

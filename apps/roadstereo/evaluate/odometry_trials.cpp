@@ -19,7 +19,6 @@
 #include "roadstereo/loop_search.hpp"
 #include "roadstereo/synth.hpp"
 #include "scene_options.hpp"
-#include "settings.hpp"
 #include "stopwatch.hpp"
 
 namespace roadstereo::cli {
@@ -314,10 +313,7 @@ void OdometryTrialOptions::validate() const {
 OdometryTrials run_odometry_trials(const OdometryTrialOptions& options) {
   options.validate();
   PosedPairs pairs = options.folder.empty() ? rendered_pairs(options) : recorded_pairs(options);
-  PipelineOptions pipeline_options = preset(options.preset);
-  pipeline_options.threads = options.methods.threads;
-  apply_settings(options.methods.settings, pipeline_options);
-  Pipeline pipeline(pipeline_options, pairs.calibration);
+  Pipeline pipeline(with_settings(preset(options.preset), options.methods), pairs.calibration);
   const OdometryOptions odometry_options{.threads = options.methods.threads};
   Odometry odometry(pairs.calibration, odometry_options);
   const ScratchFolder folder;

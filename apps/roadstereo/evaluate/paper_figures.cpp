@@ -21,9 +21,7 @@ namespace {
 constexpr int cell_width = 480;
 
 Frame process_paper(const synth::SyntheticPair& pair, const MethodSettings& methods, FrameResult& result) {
-  PipelineOptions options = preset("paper");
-  options.threads = methods.threads;
-  Pipeline pipeline(options, pair.calibration);
+  Pipeline pipeline(with_settings(preset("paper"), methods), pair.calibration);
   pipeline.process(pair.left.view(), pair.right.view(), result);
   return io::tint_magenta(pair.left.view(), 0, Image<std::uint8_t>(pair.left.width, pair.left.height, 0));
 }

@@ -6,15 +6,15 @@
 #include <optional>
 
 #include "evaluation/peer_matchers.hpp"
+#include "find_damage_or_warn.hpp"
 #include "flight/rectified_source.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/frame_source.hpp"
-#include "settings.hpp"
 
 namespace roadstereo::cli {
 namespace {
 
-/// Largest difference of a plane to the robust fit to the truth.
+/// Largest difference of a plane to the robust fit to the truth. Throws Error when the truth is too sparse for a fit.
 double plane_difference(const DisparityPlane& plane, const LabelledFrame& frame, int threads) {
   const DisparityPlane truth =
       estimate_roll(frame.truth, frame.road->view(), std::nullopt, 0, RollOptions{}, threads).plane;
@@ -57,17 +57,19 @@ RobustnessResult run_robustness_trial(const std::string& name, const LabelledFra
   RobustnessResult result;
   result.trial.frame = name;
   result.trial.plane_px = std::numeric_limits<double>::infinity();
+  Pipeline pipeline(method_options("default", task, settings), frame.pair.calibration);
+  RoadModelEstimate road;
   try {
-    Pipeline pipeline(method_options("default", task, settings), frame.pair.calibration);
     const FrameResult& processed = pipeline.process(frame.pair.left.view(), frame.pair.right.view());
-    result.trial.status = processed.road.status;
-    if (processed.road.status != RoadStatus::none) {
-      result.trial.plane_px = plane_difference(processed.road.model, frame, settings.threads);
-    }
+    road = processed.road;
     result.maps.push_back(processed.disparity);
+  } catch (const SystemError&) {
+    throw;
   } catch (const Error&) {  // the pair was rejected: every disparity is missing
     result.maps.emplace_back(frame.truth.width(), frame.truth.height(), std::numeric_limits<float>::quiet_NaN());
   }
+  result.trial.status = road.status;
+  if (road.has_road()) result.trial.plane_px = plane_difference(road.model, frame, settings.threads);
   for (const std::string& baseline : io::peer_names()) result.maps.push_back(run_method(baseline, task, settings));
   for (const Image<float>& map : result.maps) {
     result.trial.scores.push_back(score_disparity(map, frame.truth, frame.road->view(), robustness_tolerances_px()));
@@ -77,22 +79,26 @@ RobustnessResult run_robustness_trial(const std::string& name, const LabelledFra
 
 DriveCounts run_drive(const Drive& drive, const MethodSettings& settings) {
   RectifiedSource source(io::open_source({drive.folder}), drive.calibration);
+  const PipelineOptions options = with_settings(preset("default"), settings);
   DriveCounts counts;
   std::optional<Pipeline> pipeline;
+  DamageMap damage;
+  PairHealth health;
+  std::vector<std::string> warnings;
   while (const std::optional<io::SourcePair> pair = source.next()) {
     ++counts.frames;
+    if (!pair->error.empty()) {
+      ++counts.none;
+      continue;
+    }
+    if (!pipeline) pipeline.emplace(options, source.calibration());
+    if (pair->white_level > 0) pipeline->set_white_level(pair->white_level);
     try {
-      if (!pair->error.empty()) fail(pair->error);
-      if (!pipeline) {
-        PipelineOptions options = preset("default");
-        options.threads = settings.threads;
-        apply_settings(settings.settings, options);
-        pipeline.emplace(options, source.calibration());
-      }
-      if (pair->white_level > 0) pipeline->set_white_level(pair->white_level);
-      const RoadStatus status = pipeline->process(pair->left.view(), pair->right.view()).road.status;
+      const FrameResult& result = pipeline->process(pair->left.view(), pair->right.view());
+      const RoadStatus status = result.road.status;
       ++(status == RoadStatus::tracked ? counts.tracked : status == RoadStatus::none ? counts.none : counts.found);
-      counts.damages += static_cast<int>(pipeline->find_damage().damages.size());
+      find_damage_or_warn(result, source.calibration(), options.damage, settings.threads, damage, health, warnings);
+      counts.damages += static_cast<int>(damage.damages.size());
     } catch (const SystemError&) {
       throw;
     } catch (const Error&) {

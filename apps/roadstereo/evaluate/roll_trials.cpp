@@ -9,7 +9,6 @@
 #include "core/degrees.hpp"
 #include "evaluate/roll_maps.hpp"
 #include "roadstereo/pipeline.hpp"
-#include "settings.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -106,9 +105,7 @@ std::string solver_name(RollSolver solver) {
 /// Pairs of one kind of road, matched by a preset: its own roll, and that of the paper's solver on its maps.
 std::vector<RollErrors> run_pairs(const std::string& preset_name, double road_camber, const RollTrialOptions& options) {
   constexpr double noise_grey = 2;
-  PipelineOptions pipeline_options = preset(preset_name);
-  pipeline_options.threads = options.methods.threads;
-  apply_settings(options.methods.settings, pipeline_options);
+  const PipelineOptions pipeline_options = with_settings(preset(preset_name), options.methods);
   const std::string pairs = preset_name == "default" ? "matched pair" : "pair matched by " + preset_name;
   const std::string maps = pairs + (road_camber > 0 ? ", damage, camber" : ", damage");
   RollErrors own{maps, solver_name(pipeline_options.roll.solver), {}, {}};

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "benchmark_frames.hpp"
+#include "core/max_disparities.hpp"
 #include "evaluation/peer_matchers.hpp"
 #include "image_size.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
-#include "settings.hpp"
 #include "stopwatch.hpp"
 
 namespace roadstereo::cli {
@@ -17,11 +18,9 @@ namespace {
 Pipeline make_pipeline(const std::string& name, bool narrow_search, const RuntimeOptions& runtime,
                        const StereoPair& pair) {
   PipelineOptions options = preset(name);
-  options.threads = runtime.methods.threads;
   options.narrow_search = narrow_search;
   options.perspective.disparities = runtime.disparities;
-  apply_settings(runtime.methods.settings, options);
-  return Pipeline(options, pair.calibration);
+  return Pipeline(with_settings(std::move(options), runtime.methods), pair.calibration);
 }
 
 void time_frame(Pipeline& pipeline, const StereoPair& pair, PipelineTimes& times) {
@@ -34,7 +33,9 @@ void time_frame(Pipeline& pipeline, const StereoPair& pair, PipelineTimes& times
 }  // namespace
 
 void RuntimeOptions::validate() const {
-  if (disparities < 1 || disparities > 1024) fail("--disparities is ", disparities, "; it must be between 1 and 1024");
+  if (disparities < 1 || disparities > max_disparities) {
+    fail("--disparities is ", disparities, "; it must be between 1 and ", max_disparities);
+  }
   if (runs < 1 || runs > 100000) fail("--runs is ", runs, "; it must be between 1 and 100000");
 }
 
