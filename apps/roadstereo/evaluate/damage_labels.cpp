@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 
+#include "core/require_size.hpp"
 #include "evaluate/label_regions.hpp"
 #include "evaluate/scan_frames.hpp"
 #include "map_source.hpp"
@@ -17,8 +18,6 @@ namespace roadstereo::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double min_share = 1.0 / 3;
 
 bool is_depression(const DamageMap& map, std::uint16_t id) {
   return id != 0 && map.damages[id - 1U].kind == DamageKind::depression;
@@ -39,22 +38,19 @@ void count_regions(const DamageMap& map, const Image<std::uint8_t>& label, Label
   }
   result.labels = regions.sizes.size();
   for (std::size_t k = 0; k < covered.size(); ++k) {
-    const bool is_found = static_cast<double>(covered[k]) >= min_share * static_cast<double>(regions.sizes[k]);
+    const bool is_found = static_cast<double>(covered[k]) >= min_damage_share * static_cast<double>(regions.sizes[k]);
     result.found += is_found ? 1U : 0U;
   }
   for (const Damage& damage : map.damages) {
     if (damage.kind != DamageKind::depression) continue;
     const double labelled = static_cast<double>(labelled_pixels[static_cast<std::uint16_t>(damage.id)]);
-    result.false_positives += labelled < min_share * static_cast<double>(damage.pixels) ? 1U : 0U;
+    result.false_positives += labelled < min_damage_share * static_cast<double>(damage.pixels) ? 1U : 0U;
   }
 }
 
 LabelResult score_frame(const std::string& name, const DamageMap& map, const Image<std::uint8_t>& label,
                         const Image<float>& measured, const std::string& label_file) {
-  if (label.width() != map.ids.width() || label.height() != map.ids.height()) {
-    fail(label_file, " has ", label.width(), "×", label.height(), " pixels; it must have ", map.ids.width(), "×",
-         map.ids.height(), " like the map");
-  }
+  require_same_size(label_file.c_str(), map_size(label), "the map", map_size(map.ids));
   LabelResult result;
   result.frame = name;
   for (int v = 0; v < label.height(); ++v) {

@@ -25,7 +25,7 @@ struct LabelResult {
 /// file that is missing.
 std::vector<LabelResult> score_labelled_maps(const std::string& folder);
 
-/// Score stereo pairs with labels, in the layout of `find_scan_frames`, by every method.
+/// Score stereo pairs with labels, in the layout of `find_labelled_pairs`, by every method.
 std::vector<LabelResult> score_labelled_pairs(const std::string& folder, const std::vector<DamageMethod>& methods);
 
 /// Table with one row per method and frame, and one per method for all pixels. Results are grouped by method.

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "json_text.hpp"
+
 namespace roadstereo::cli {
 
 Table confidence_table(const std::vector<FoundRegion>& regions) {
@@ -32,30 +34,27 @@ Table confidence_table(const std::vector<FoundRegion>& regions) {
 }
 
 nlohmann::ordered_json regions_json(const std::vector<FoundRegion>& regions) {
-  const auto number = [](double value) {
-    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
-  };
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const FoundRegion& region : regions) {
     const DamageEvidence& evidence = region.damage.evidence;
     list.push_back({{"frame", region.frame},
                     {"kind", name_of(region.damage.kind)},
                     {"pixels", region.damage.pixels},
-                    {"significance", number(evidence.significance)},
-                    {"contrast_sigmas", number(evidence.contrast_sigmas)},
-                    {"road_share", number(evidence.road_share)},
-                    {"border_share", number(evidence.border_share)},
-                    {"unseen_share", number(evidence.unseen_share)},
-                    {"surface_significance", number(evidence.surface_significance)},
-                    {"range_vote", number(evidence.range_vote)},
-                    {"specular_excess", number(evidence.specular_excess)},
-                    {"texture_share", number(evidence.texture_share)},
-                    {"pixel_significance", number(evidence.pixel_significance)},
-                    {"likely_wall_slope", number(evidence.likely_wall_slope)},
-                    {"extent", number(evidence.extent)},
-                    {"rut_significance", number(evidence.rut_significance)},
-                    {"clutter", number(evidence.clutter)},
-                    {"confidence", number(region.damage.confidence)},
+                    {"significance", json_number(evidence.significance)},
+                    {"contrast_sigmas", json_number(evidence.contrast_sigmas)},
+                    {"road_share", json_number(evidence.road_share)},
+                    {"border_share", json_number(evidence.border_share)},
+                    {"unseen_share", json_number(evidence.unseen_share)},
+                    {"surface_significance", json_number(evidence.surface_significance)},
+                    {"range_vote", json_number(evidence.range_vote)},
+                    {"specular_excess", json_number(evidence.specular_excess)},
+                    {"texture_share", json_number(evidence.texture_share)},
+                    {"pixel_significance", json_number(evidence.pixel_significance)},
+                    {"likely_wall_slope", json_number(evidence.likely_wall_slope)},
+                    {"extent", json_number(evidence.extent)},
+                    {"rut_significance", json_number(evidence.rut_significance)},
+                    {"clutter", json_number(evidence.clutter)},
+                    {"confidence", json_number(region.damage.confidence)},
                     {"is_damage", region.is_damage}});
   }
   return list;

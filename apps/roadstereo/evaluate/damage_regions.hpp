@@ -10,6 +10,9 @@
 
 namespace roadstereo::cli {
 
+/// Share of a damage that a region must cover, and of a region that must be damage.
+inline constexpr double min_damage_share = 1.0 / 3;
+
 /// A damage or candidate, and whether the labels agree.
 struct FoundRegion {
   std::string frame;
@@ -30,7 +33,6 @@ nlohmann::ordered_json regions_json(const std::vector<FoundRegion>& regions);
 
 template <class Labelled>
 std::vector<FoundRegion> found_regions(const std::string& frame, const DamageMap& map, const Labelled& labelled) {
-  constexpr double min_share = 1.0 / 3;
   std::vector<FoundRegion> regions;
   for (const std::vector<Damage>* list : {&map.damages, &map.candidates}) {
     for (const Damage& damage : *list) {
@@ -41,7 +43,7 @@ std::vector<FoundRegion> found_regions(const std::string& frame, const DamageMap
           count += labelled(u, v) && (!has_pixels || map.ids(u, v) == damage.id) ? 1 : 0;
         }
       }
-      regions.push_back({frame, damage, count >= min_share * static_cast<double>(damage.pixels)});
+      regions.push_back({frame, damage, count >= min_damage_share * static_cast<double>(damage.pixels)});
     }
   }
   return regions;

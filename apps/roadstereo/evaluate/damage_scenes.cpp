@@ -20,7 +20,6 @@
 namespace roadstereo::cli {
 namespace {
 
-constexpr double min_share = 1.0 / 3;
 constexpr std::size_t min_pixels = 64;
 
 /// Pixels of one damage of the ground truth.
@@ -76,19 +75,17 @@ std::uint16_t best_match(const Cover& cover) {
       best = id;
     }
   }
-  return static_cast<double>(max_pixels) >= min_share * static_cast<double>(cover.pixels) ? best : 0;
+  return static_cast<double>(max_pixels) >= min_damage_share * static_cast<double>(cover.pixels) ? best : 0;
 }
 
-SceneDamage describe(const std::string& name, const SceneCase& scene, const synth::DamageTruth& truth,
-                     const Cover& cover, double height_m) {
+SceneDamage describe(const SceneCase& scene, const synth::DamageTruth& truth, const Cover& cover, double height_m) {
   SceneDamage damage;
-  damage.scene = name;
   damage.truth = truth;
   damage.pixels = cover.pixels;
   damage.fully_visible = cover.fully_visible;
   damage.depth_px = truth.depth_m * cover.disparity / static_cast<double>(cover.pixels) / height_m;
-  damage.std_error_px = std::hypot(scene.map.noise_px, cover.sigmas.empty() ? scene.map.noise_px : median(cover.sigmas),
-                                   sub_pixel_bias_px);
+  const double noise_px = scene.map.has_road() ? scene.map.noise_px : 0;  // damage of a road not found counts as missed
+  damage.std_error_px = std::hypot(noise_px, cover.sigmas.empty() ? noise_px : median(cover.sigmas), sub_pixel_bias_px);
   const std::uint16_t id = best_match(cover);
   if (id == 0) return damage;
   damage.found = scene.map.damages[id - 1U];
@@ -115,7 +112,7 @@ std::size_t count_false_positives(const SceneCase& scene) {
   std::size_t count = 0;
   for (std::size_t k = 0; k < true_pixels.size(); ++k) {
     const auto pixels = static_cast<double>(scene.map.damages[k].pixels);
-    count += static_cast<double>(true_pixels[k]) < min_share * pixels ? 1U : 0U;
+    count += static_cast<double>(true_pixels[k]) < min_damage_share * pixels ? 1U : 0U;
   }
   return count;
 }
@@ -190,7 +187,7 @@ std::vector<Cell> quantity_row(const Quantity& quantity, const SceneResults& res
 void add_detection_rows(const SceneResults& results, Table& table) {
   double all = 0;
   double all_found = 0;
-  for (const char* kind : {"pothole", "bump", "crack", "rut"}) {
+  for (const char* kind : scene_kinds) {
     double in_view = 0;
     double found = 0;
     double deep = 0;
@@ -266,7 +263,7 @@ void add_scene(const LabelledScene& scene, const DamageMethod& method, SceneResu
   for (const synth::DamageTruth& truth : scene.pair.damages) {
     const auto cover = covers.find(truth.id);
     if (cover == covers.end()) continue;  // out of view
-    results.damages.push_back(describe(scene.frame, scene_case, truth, cover->second, scene.camera_height_m));
+    results.damages.push_back(describe(scene_case, truth, cover->second, scene.camera_height_m));
   }
   results.found += found.map.damages.size();
   results.false_positives += count_false_positives(scene_case);

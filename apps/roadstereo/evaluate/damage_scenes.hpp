@@ -15,7 +15,6 @@ namespace roadstereo::cli {
 
 /// One damage of a synthetic road and the region found on it.
 struct SceneDamage {
-  std::string scene;
   synth::DamageTruth truth;
   std::size_t pixels = 0;       ///< in the left image
   bool fully_visible = false;   ///< not cut by the border of the image

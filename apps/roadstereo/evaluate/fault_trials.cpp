@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/degrees.hpp"
+#include "evaluate/damage_regions.hpp"
 #include "evaluation/image_faults.hpp"
 #include "find_damage_or_warn.hpp"
 #include "roadstereo/error.hpp"
@@ -210,7 +211,9 @@ void count_found(const SyntheticPair& pair, const DamageMap& map, FaultCounts& c
     ++counts.in_view;
     const auto best = std::max_element(by_id.begin(), by_id.end(),
                                        [](const auto& one, const auto& other) { return one.second < other.second; });
-    if (best == by_id.end() || 3 * best->second < pixels) continue;
+    if (best == by_id.end() || static_cast<double>(best->second) < min_damage_share * static_cast<double>(pixels)) {
+      continue;
+    }
     ++counts.found;
     const Damage& damage = map.damages[static_cast<std::size_t>(best->first - 1)];
     if (!is_graded(damage)) continue;

@@ -9,15 +9,7 @@
 namespace roadstereo::cli {
 namespace {
 
-/// Throws Error unless mask and truth have one size.
-void require_size(const Image<std::uint8_t>& mask, const Image<float>& truth, const std::string& path) {
-  if (mask.width() == truth.width() && mask.height() == truth.height()) return;
-  fail(path, " has ", mask.width(), "×", mask.height(), " pixels; it must have ", truth.width(), "×", truth.height(),
-       " like the ground truth");
-}
-
-}  // namespace
-
+/// σ_d of the road inside the mask.
 Flatness measure_flatness(ImageView<const float> disparity, ImageView<const std::uint8_t> mask, int threads) {
   Flatness flatness;
   flatness.without_roll_px = transformed_deviation(disparity, mask, fit_without_roll(disparity, mask));
@@ -26,15 +18,15 @@ Flatness measure_flatness(ImageView<const float> disparity, ImageView<const std:
     options.solver = roll_solvers()[i].solver;
     const RollEstimate estimate = estimate_roll(disparity, mask, std::nullopt, 0, options, threads);
     flatness.with_roll_px[i] = transformed_deviation(disparity, mask, estimate.plane);
-    flatness.roll_rad[i] = estimate.roll_rad;
   }
   return flatness;
 }
 
+}  // namespace
+
 FlatnessFrame measure_frame(const KittiFiles& files, const std::string& preset, const MethodSettings& methods) {
   const LabelledFrame frame = read_kitti_frame(files);
   if (!frame.road) fail(files.name, ": the frame has no road mask; --road-masks gives the folder of the masks");
-  require_size(*frame.road, frame.truth, files.road);
   const Image<float> matched = run_method(preset, MethodTask{frame.pair}, methods);
   return {files.name, measure_flatness(frame.truth, *frame.road, methods.threads),
           measure_flatness(matched, *frame.road, methods.threads)};

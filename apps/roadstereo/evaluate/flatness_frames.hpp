@@ -14,7 +14,6 @@ namespace roadstereo::cli {
 struct Flatness {
   double without_roll_px = 0;            ///< with ψ = 0; only α0 and α1 are fitted
   std::array<double, 3> with_roll_px{};  ///< with ψ by each of roll_solvers()
-  std::array<double, 3> roll_rad{};      ///< ψ by each of roll_solvers()
 };
 
 /// One frame of KITTI Stereo 2015.
@@ -24,11 +23,8 @@ struct FlatnessFrame {
   Flatness matched;  ///< of the disparities of the preset inside the same mask
 };
 
-/// Measure the flatness of the road inside the mask.
-Flatness measure_flatness(ImageView<const float> disparity, ImageView<const std::uint8_t> mask, int threads);
-
 /// Read a frame, match it with the preset, and measure ground truth and match. Throws Error when the frame has no road
-/// mask or its size differs.
+/// mask.
 FlatnessFrame measure_frame(const KittiFiles& files, const std::string& preset, const MethodSettings& methods);
 
 }  // namespace roadstereo::cli

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "core/require_size.hpp"
 #include "evaluate/methods.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/image_file.hpp"
@@ -47,10 +48,7 @@ Image<float> read_given_map(const GivenMaps& maps, const std::string& frame, int
     const fs::path file = fs::path(maps.folder) / (frame + ending);
     if (!fs::is_regular_file(file)) continue;
     Image<float> map = io::read_disparity(file.string());
-    if (map.width() != width || map.height() != height) {
-      fail(file.string(), " has ", map.width(), "×", map.height(), " pixels; it must have ", width, "×", height,
-           " like the left image");
-    }
+    require_same_size(file.c_str(), map_size(map), "the left image", {width, height});
     return map;
   }
   fail(maps.folder, ": the folder contains no ", frame, ".png, .tiff, .tif or .pfm");

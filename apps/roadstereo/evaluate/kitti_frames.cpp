@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <functional>
 
+#include "core/require_size.hpp"
 #include "evaluate/road_polygons.hpp"
 #include "mask_file.hpp"
 #include "roadstereo/error.hpp"
@@ -28,11 +30,15 @@ std::string path_if_present(const fs::path& path) {
 std::optional<StereoCalibration> kitti_calibration(int width) {
   struct Day {
     int width;
-    double focal_px;
+    double focal_px, cx_px, cy_px;
   };
-  constexpr std::array<Day, 5> days{{{1242, 721.54}, {1241, 718.856}, {1238, 718.34}, {1226, 707.09}, {1224, 707.05}}};
+  constexpr std::array<Day, 5> days{{{1242, 721.54, 609.56, 172.85},
+                                     {1241, 718.86, 607.19, 185.22},
+                                     {1238, 718.34, 600.39, 181.51},
+                                     {1226, 707.09, 601.89, 183.11},
+                                     {1224, 707.05, 604.08, 180.51}}};
   for (const Day& day : days) {
-    if (day.width == width) return StereoCalibration{day.focal_px, 609.56, 172.85, 0.5327, 0, 0, 0};
+    if (day.width == width) return StereoCalibration{day.focal_px, day.cx_px, day.cy_px, 0.5327, 0, 0, 0};
   }
   return std::nullopt;
 }
@@ -59,18 +65,20 @@ Layout layout_of(const fs::path& root) {
        ": the folder has neither disp_noc_0 nor disp_noc; it must have the layout of KITTI Stereo 2015 or 2012");
 }
 
-/// Frames without a mask or polygons stay without a road.
+/// Frames without a mask or polygons stay without a road. Throws Error if `road_masks` is given and all do.
 void add_roads(const fs::path& root, const std::string& road_masks, std::vector<KittiFiles>& frames) {
   if (fs::is_regular_file(road_masks)) {
     auto polygons = read_road_polygons(road_masks);
     for (KittiFiles& frame : frames) frame.polygons = std::move(polygons[frame.name]);
-    return;
+  } else {
+    if (!road_masks.empty() && !fs::is_directory(road_masks)) {
+      fail(road_masks, " is neither a folder of masks nor a JSON file of polygons");
+    }
+    const fs::path masks = road_masks.empty() ? root / "road" : fs::path(road_masks);
+    for (KittiFiles& frame : frames) frame.road = path_if_present(masks / (frame.name + ".png"));
   }
-  if (!road_masks.empty() && !fs::is_directory(road_masks)) {
-    fail(road_masks, " is neither a folder of masks nor a JSON file of polygons");
-  }
-  const fs::path masks = road_masks.empty() ? root / "road" : fs::path(road_masks);
-  for (KittiFiles& frame : frames) frame.road = path_if_present(masks / (frame.name + ".png"));
+  if (road_masks.empty() || std::any_of(frames.begin(), frames.end(), std::mem_fn(&KittiFiles::has_road))) return;
+  fail(road_masks, " has the road of no frame; names must be those of the frames, such as ", frames.front().name);
 }
 
 }  // namespace
@@ -100,13 +108,16 @@ LabelledFrame read_kitti_frame(const KittiFiles& files) {
   if (!files.calibration.empty()) pair.calibration.push_back(files.calibration);
   frame.pair = read_pair(pair);
   if (!frame.pair.calibration) frame.pair.calibration = kitti_calibration(frame.pair.left.width);
+  const ImageSize size{frame.pair.left.width, frame.pair.left.height};
   frame.truth = io::read_disparity(files.truth);
+  require_same_size(files.truth.c_str(), map_size(frame.truth), "the left image", size);
   constexpr int usual_disparities = 128;
   frame.disparities = disparities_of(frame.truth, usual_disparities);
   if (!files.polygons.empty()) {
-    frame.road = polygon_mask(files.polygons, frame.pair.left.width, frame.pair.left.height);
+    frame.road = polygon_mask(files.polygons, size.width, size.height);
   } else if (!files.road.empty()) {
     frame.road = read_mask(files.road);
+    require_same_size(files.road.c_str(), map_size(*frame.road), "the left image", size);
   }
   return frame;
 }

@@ -14,10 +14,17 @@
 namespace roadstereo::cli {
 namespace {
 
-/// Largest difference of a plane to the robust fit to the truth. Throws Error when the truth is too sparse for a fit.
-double plane_difference(const DisparityPlane& plane, const LabelledFrame& frame, int threads) {
-  const DisparityPlane truth =
-      estimate_roll(frame.truth, frame.road->view(), std::nullopt, 0, RollOptions{}, threads).plane;
+/// The robust fit to the truth. Throws Error naming the frame when its truth is too sparse.
+DisparityPlane true_plane(const std::string& name, const LabelledFrame& frame, int threads) try {
+  return estimate_roll(frame.truth, frame.road->view(), std::nullopt, 0, RollOptions{}, threads).plane;
+} catch (const SystemError&) {
+  throw;
+} catch (const Error& error) {
+  fail(name, ": the truth of the road has no plane: ", error.what());
+}
+
+/// Largest difference of two planes over the road.
+double plane_difference(const DisparityPlane& plane, const DisparityPlane& truth, const LabelledFrame& frame) {
   double largest = 0;
   for (int v = 0; v < frame.truth.height(); ++v) {
     for (int u = 0; u < frame.truth.width(); ++u) {
@@ -69,7 +76,9 @@ RobustnessResult run_robustness_trial(const std::string& name, const LabelledFra
     result.maps.emplace_back(frame.truth.width(), frame.truth.height(), std::numeric_limits<float>::quiet_NaN());
   }
   result.trial.status = road.status;
-  if (road.has_road()) result.trial.plane_px = plane_difference(road.model, frame, settings.threads);
+  if (road.has_road()) {
+    result.trial.plane_px = plane_difference(road.model, true_plane(name, frame, settings.threads), frame);
+  }
   for (const std::string& baseline : io::peer_names()) result.maps.push_back(run_method(baseline, task, settings));
   for (const Image<float>& map : result.maps) {
     result.trial.scores.push_back(score_disparity(map, frame.truth, frame.road->view(), robustness_tolerances_px()));

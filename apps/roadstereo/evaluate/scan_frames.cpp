@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/require_size.hpp"
 #include "evaluation/ply_read.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/point_cloud.hpp"
@@ -85,10 +86,7 @@ Points read_points(const std::string& path, double to_mm) {
 
 LabelledPoints labelled_points(ImageView<const float> disparity, ImageView<const std::uint8_t> label,
                                const StereoCalibration& calibration) {
-  if (label.width() != disparity.width() || label.height() != disparity.height()) {
-    fail("the label has ", label.width(), "×", label.height(), " pixels; it must have ", disparity.width(), "×",
-         disparity.height(), " like the image");
-  }
+  require_same_size("the label", map_size(label), "the image", map_size(disparity));
   constexpr double to_mm = 1000;
   LabelledPoints found;
   for (int v = 0; v < label.height(); ++v) {

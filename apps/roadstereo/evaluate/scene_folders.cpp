@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/require_size.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/image_file.hpp"
 
@@ -14,22 +15,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// 8-bit grey image of one size with `like`.
-Frame read_labels(const fs::path& path, const Frame& like) {
+/// 8-bit grey image.
+Frame read_labels(const fs::path& path, const ImageSize& size) {
   Frame labels = io::read_frame(path.string());
   if (labels.sample != SampleType::u8 || labels.order != ChannelOrder::grey) fail(path.string(), " is not 8-bit grey");
-  if (labels.width != like.width || labels.height != like.height) {
-    fail(path.string(), " has ", labels.width, "×", labels.height, " pixels; it must have ", like.width, "×",
-         like.height, " like the pair");
-  }
+  require_same_size(path.c_str(), {labels.width, labels.height}, "the pair", size);
   return labels;
 }
 
 Image<std::uint16_t> read_damage_labels(const std::string& path, const Image<float>& like) {
   const Frame file = io::read_frame(path);
-  if (file.order != ChannelOrder::grey || file.width != like.width() || file.height != like.height()) {
-    fail(path, " must be grey with ", like.width(), "×", like.height(), " pixels like the disparities");
-  }
+  if (file.order != ChannelOrder::grey) fail(path, " is not grey");
+  require_same_size(path.c_str(), {file.width, file.height}, "the disparities", map_size(like));
   Image<std::uint16_t> labels(file.width, file.height);
   if (file.sample == SampleType::u8) {
     std::copy(file.bytes.begin(), file.bytes.end(), labels.row(0));
@@ -61,10 +58,13 @@ LabelledFrame read_scene_folder(const fs::path& folder) {
   PairFiles files{(folder / "left.png").string(), (folder / "right.png").string(), {}};
   if (fs::exists(folder / "calibration.yaml")) files.calibration.push_back((folder / "calibration.yaml").string());
   frame.pair = read_pair(files);
-  frame.truth = io::read_disparity((folder / "disparity.tiff").string());
+  const ImageSize size{frame.pair.left.width, frame.pair.left.height};
+  const std::string truth = (folder / "disparity.tiff").string();
+  frame.truth = io::read_disparity(truth);
+  require_same_size(truth.c_str(), map_size(frame.truth), "the pair", size);
   frame.disparities = disparities_of(frame.truth, 0);
-  const Frame region = read_labels(folder / "region.png", frame.pair.left);
-  const Frame seen = read_labels(folder / "occ.png", frame.pair.left);
+  const Frame region = read_labels(folder / "region.png", size);
+  const Frame seen = read_labels(folder / "occ.png", size);
   frame.road.emplace(region.width, region.height, std::uint8_t{0});
   for (std::size_t i = 0; i < region.bytes.size(); ++i) {
     const bool on_road = region.bytes[i] == road || region.bytes[i] == damage;
@@ -84,6 +84,11 @@ SceneTruth read_scene_truth(const fs::path& folder, const Image<float>& disparit
       synth::DamageTruth one;
       one.id = damage.at("label");
       one.kind = damage.at("kind");
+      if (one.kind == "alligator") one.kind = "crack";  // a net of cracks
+      if (std::find(scene_kinds.begin(), scene_kinds.end(), one.kind) == scene_kinds.end()) {
+        fail(path, ": the kind of damage ", one.id, " is ", one.kind,
+             "; it must be pothole, bump, crack, alligator or rut");
+      }
       one.depth_m = damage.at("max_depth_m");
       one.area_m2 = damage.at("area_m2");
       one.volume_m3 = damage.at("volume_m3");

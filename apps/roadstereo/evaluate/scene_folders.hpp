@@ -2,6 +2,7 @@
 // cameras), region.png (1 road, 2 damage), and optionally calibration.yaml, damage.png (16 bit, labels) and truth.json.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -19,6 +20,9 @@ std::vector<std::filesystem::path> scene_folders(const std::filesystem::path& fo
 /// The pair of a scene and its truth. The road is road and damage that both cameras see.
 LabelledFrame read_scene_folder(const std::filesystem::path& folder);
 
+/// Kinds of damage of rendered roads.
+inline constexpr std::array scene_kinds{"pothole", "bump", "crack", "rut"};
+
 /// What damage.png and truth.json tell of the damage of a scene.
 struct SceneTruth {
   Image<std::uint16_t> labels;  ///< id of the damage at the pixel; 0: none
@@ -26,7 +30,8 @@ struct SceneTruth {
   double camera_height_m = 0;
 };
 
-/// Throws Error naming the file if it is missing or the labels do not have the size of `disparity`.
+/// Throws Error naming the file if it is missing, has a damage of another kind, or the labels do not have the size of
+/// `disparity`.
 SceneTruth read_scene_truth(const std::filesystem::path& folder, const Image<float>& disparity);
 
 }  // namespace roadstereo::cli
