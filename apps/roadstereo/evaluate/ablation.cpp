@@ -54,8 +54,9 @@ std::string with_difference(const Measure& measure, const std::vector<AblationRe
   if (!std::isfinite(value)) return "–";
   std::string text = fmt::format("{:.{}f}", value, measure.decimals);
   const std::size_t base = base_of(variant);
-  if (base == variant) return text;
-  return fmt::format("{} ({:+.{}f})", text, value - measure.factor * results[base].*measure.member, measure.decimals);
+  const double difference = value - measure.factor * results[base].*measure.member;
+  return base == variant || std::isnan(difference) ? text
+                                                   : fmt::format("{} ({:+.{}f})", text, difference, measure.decimals);
 }
 
 /// Table of the cells `cell(measure, variant)`.

@@ -47,7 +47,7 @@ void run_kitti(const AblationOptions& options, std::vector<Trials>& trials) {
     const LabelledFrame frame = read_kitti_frame(files);
     if (!frame.road) fail(options.kitti, "/road: frame ", files.name, " has no road mask");
     for (std::size_t i = 0; i < trials.size(); ++i) {
-      Pipeline pipeline = make_pipeline(ablation_variants()[i], {frame.pair}, options.methods);
+      Pipeline pipeline = make_pipeline(ablation_variants()[i], {frame.pair, frame.disparities}, options.methods);
       const FrameResult& result = pipeline.process(frame.pair.left.view(), frame.pair.right.view());
       trials[i].kitti.push_back(score_disparity(result.disparity, frame.truth, frame.road->view(), tolerances_px()));
       time_second_pass(pipeline, frame.pair, trials[i]);

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+
 #include "evaluate/score_columns.hpp"
 #include "evaluation/peer_matchers.hpp"
 
@@ -33,9 +35,10 @@ const std::vector<Measure>& measures() {
   return all;
 }
 
-/// "best", or the best baseline with its value and that of the default preset.
+/// "best", or the best baseline with its value and that of the default preset; "–" where that has none.
 std::string outcome(const Measure& measure, const std::vector<DisparityScore>& scores) {
   const double ours = measure.value(scores[method_index("default")]);
+  if (std::isnan(ours)) return "–";
   std::string best_baseline;
   double best = ours;
   for (const std::string& baseline : io::peer_names()) {

@@ -9,7 +9,8 @@ namespace roadstereo::cli {
 
 /// Comparison of the default preset with OpenCV's matchers.
 struct BaselineComparison {
-  Table table;          ///< by group and measure: "best" if no matcher is better, else the best matcher and both values
+  Table table;  ///< by group and measure: "best" if no matcher is better, else the best matcher and both values; "–"
+                ///< without a value of the default preset
   std::string summary;  ///< one line: number of groups in which the default preset is best
 };
 

@@ -25,7 +25,7 @@ struct FlightArguments {
 };
 
 constexpr const char* flight_note =
-    R"(plane: maximum difference from the true plane over the image; the true plane has no camber. independent: a pipeline
+    R"(plane: maximum difference from the true plane over the image; the true plane has no camber. ∞: no road was found. independent: a pipeline
 that is reset before every frame. Times are those of the tracking pipeline, from frames in memory to the result. Each
 pass is a separate pipeline that has processed the same frames. CPU time is summed over all threads. Memory is allocated
 and threads are started before the first frame, except with --cold.
@@ -50,13 +50,14 @@ double maximum(const std::vector<double>& values) {
   return values.empty() ? NAN : *std::max_element(values.begin(), values.end());
 }
 
-/// Maximum excess of the error of a tracked frame over that of the same frame processed independently.
+/// Maximum excess of the error of a tracked frame over that of the same frame processed independently; infinite if only
+/// tracking lost a road.
 double max_excess(const FlightTrials& frames, Stage stage, Quantity quantity) {
   std::vector<double> excess;
   excess.reserve(frames.size());
   for (const FlightTrial& frame : frames) {
-    const double tracked = frame.tracked.*stage.*quantity, fresh = frame.fresh.*stage.*quantity;
-    if (std::isfinite(tracked) && std::isfinite(fresh)) excess.push_back(tracked - fresh);
+    const double difference = frame.tracked.*stage.*quantity - frame.fresh.*stage.*quantity;
+    if (!std::isnan(difference)) excess.push_back(difference);
   }
   return maximum(excess);
 }

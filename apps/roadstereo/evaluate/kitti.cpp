@@ -35,12 +35,6 @@ struct Region {
   std::vector<std::string> methods;
   std::vector<std::string> frames{};
   std::vector<std::vector<DisparityScore>> scores = std::vector<std::vector<DisparityScore>>(methods.size());
-
-  std::vector<DisparityScore> means() const {
-    std::vector<DisparityScore> means;
-    for (const auto& of_method : scores) means.push_back(mean_score(of_method));
-    return means;
-  }
 };
 
 struct Regions {
@@ -111,13 +105,10 @@ std::vector<Cell> published(const std::string& name, double rms_px, double above
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   DisparityScore score;
   score.rms_px = rms_px;
-  score.mean_px = score.sd_px = score.median_px = nan;
+  score.mean_px = score.sd_px = score.median_px = score.density = nan;
   score.bad_share = {nan, above_2 / 100, above_3 / 100};
   score.bad_or_missing_share = {nan, nan, nan};
-  std::vector<Cell> row = score_cells(score);
-  row[score_columns({}).size() + tolerances_px().size() - 1] = Cell(nan, 2);  // density
-  row.insert(row.begin(), Cell(name + " (published)"));
-  return row;
+  return score_cells({name + " (published)"}, score);
 }
 
 /// Table 1 of the paper: e_r, and e_p at 2 and 3 px.
@@ -125,16 +116,19 @@ Table published_table(const std::vector<Column>& columns) {
   return {"", columns, {published("PSMNet", 1.039, 1.345, 0.016), published("paper", 0.409, 0.217, 0.023)}};
 }
 
-Table mean_table(const Region& region) {
-  Table table{fmt::format("{}, mean over {} frames", region.title, region.frames.size()), {{"method", "method"}}, {}};
-  const auto columns = score_columns(tolerances_px());
-  table.columns.insert(table.columns.end(), columns.begin(), columns.end());
-  const std::vector<DisparityScore> means = region.means();
-  for (std::size_t i = 0; i < means.size(); ++i) {
-    table.rows.push_back(score_cells(means[i]));
-    table.rows.back().insert(table.rows.back().begin(), Cell(region.methods[i]));
+/// `score(i)`: that of method i.
+template <class Score>
+Table method_table(const std::string& title, const Region& region, const Score& score) {
+  Table table{title, score_columns({{"method", "method"}}, tolerances_px()), {}};
+  for (std::size_t i = 0; i < region.methods.size(); ++i) {
+    table.rows.push_back(score_cells({region.methods[i]}, score(i)));
   }
   return table;
+}
+
+Table mean_table(const Region& region) {
+  return method_table(fmt::format("{}, mean over {} frames", region.title, region.frames.size()), region,
+                      [&](std::size_t i) { return mean_score(region.scores[i]); });
 }
 
 /// e_r and e_p+(2) of every method by frame.
@@ -146,7 +140,7 @@ Table frame_table(const Region& region) {
     for (const auto& of_method : region.scores) {
       const DisparityScore& score = of_method[frame];
       table.rows.back().push_back(
-          Cell(fmt::format("{:.2f} / {:.2f}", score.rms_px, 100 * score.bad_or_missing_share[1])));
+          Cell(Cell(score.rms_px, 2).text() + " / " + Cell(100 * score.bad_or_missing_share[1], 2).text()));
     }
   }
   return table;
@@ -156,14 +150,8 @@ nlohmann::ordered_json region_json(const Region& region) {
   nlohmann::ordered_json document;
   document["mean"] = mean_table(region).json();
   for (std::size_t frame = 0; frame < region.frames.size(); ++frame) {
-    Table table{"", {{"method", "method"}}, {}};
-    const auto columns = score_columns(tolerances_px());
-    table.columns.insert(table.columns.end(), columns.begin(), columns.end());
-    for (std::size_t i = 0; i < region.methods.size(); ++i) {
-      table.rows.push_back(score_cells(region.scores[i][frame]));
-      table.rows.back().insert(table.rows.back().begin(), Cell(region.methods[i]));
-    }
-    document["frames"][region.frames[frame]] = table.json();
+    document["frames"][region.frames[frame]] =
+        method_table("", region, [&](std::size_t i) { return region.scores[i][frame]; }).json();
   }
   return document;
 }

@@ -35,14 +35,11 @@ std::vector<io::SheetCell> sheet_row(const MiddleburyScene& scene, ImageView<con
 Table score_scene(const MiddleburyScene& scene, const MethodSettings& settings, Image<float>& ours) {
   static const std::vector<double> tolerances_px{0.5, 1, 2};  // the benchmark's "bad 0.5", "bad 1.0", "bad 2.0"
   Table table{fmt::format("{}, {} disparities, pixels that both cameras see", scene.name, scene.disparities),
-              {{"method", "method"}},
+              score_columns({{"method", "method"}}, tolerances_px),
               {}};
-  const auto columns = score_columns(tolerances_px);
-  table.columns.insert(table.columns.end(), columns.begin(), columns.end());
   for (const std::string& name : method_names()) {
     const Image<float> map = run_method(name, {scene.pair, scene.disparities, false}, settings);
-    table.rows.push_back(score_cells(score_disparity(map, scene.truth, scene.visible.view(), tolerances_px)));
-    table.rows.back().insert(table.rows.back().begin(), Cell(name));
+    table.rows.push_back(score_cells({name}, score_disparity(map, scene.truth, scene.visible.view(), tolerances_px)));
     if (name == "default") ours = map;
   }
   return table;

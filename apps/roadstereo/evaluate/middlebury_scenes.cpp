@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "core/max_disparities.hpp"
 #include "mask_file.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/image_file.hpp"
@@ -24,7 +25,6 @@ int read_ndisp(const std::string& path) {
   if (!file) fail("cannot read ", path);
   std::stringstream text;
   text << file.rdbuf();
-  constexpr int max_disparities = 1024;
   const std::string key = "ndisp=";
   const auto position = text.str().find(key);
   if (position == std::string::npos) fail(path, ": ndisp is missing; it must be between 1 and ", max_disparities);

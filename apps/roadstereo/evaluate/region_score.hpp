@@ -1,13 +1,11 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-
-#include "roadstereo/image.hpp"
+#include <limits>
 
 namespace roadstereo::cli {
 
-/// Pixel counts for the comparison of a found region with the true one.
+/// Pixel counts for the comparison of a found region with the true one. Shares are NaN if both are empty.
 struct RegionScore {
   std::size_t both = 0;   ///< true positives
   std::size_t found = 0;  ///< pixels of the found region
@@ -26,14 +24,13 @@ struct RegionScore {
   double precision() const { return share(found); }
   double recall() const { return share(truth); }
   /// F-measure: harmonic mean of precision and recall.
-  double f() const {
-    return found + truth > 0 ? 2.0 * static_cast<double>(both) / static_cast<double>(found + truth) : 0;
-  }
+  double f() const { return 2 * share(found + truth); }
   /// Intersection over union.
   double iou() const { return share(found + truth - both); }
 
  private:
   double share(std::size_t total) const {
+    if (found + truth == 0) return std::numeric_limits<double>::quiet_NaN();
     return total > 0 ? static_cast<double>(both) / static_cast<double>(total) : 0;
   }
 };

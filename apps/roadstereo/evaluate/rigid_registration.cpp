@@ -10,6 +10,7 @@
 
 #include "core/degrees.hpp"
 #include "core/order_statistics.hpp"
+#include "core/tukey.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {
@@ -107,13 +108,6 @@ Pose icp_point_to_point(const Points& cloud, const ScanSurface& surface, Pose po
   return pose;
 }
 
-/// Tukey weight of a distance.
-double tukey_weight(double distance, double scale) {
-  constexpr double truncation = 4.685;  // 95 % efficiency on normal residuals
-  const double relative = distance / (truncation * scale);
-  return relative < 1 ? (1 - relative * relative) * (1 - relative * relative) : 0;
-}
-
 /// One Gauss–Newton step of robust point-to-plane ICP, with rotations about the centre of the cloud.
 RigidMotion point_to_plane_step(const Points& cloud, const ScanModel& scan, const RigidMotion& motion,
                                 double min_scale) {
@@ -123,7 +117,7 @@ RigidMotion point_to_plane_step(const Points& cloud, const ScanModel& scan, cons
   Matrix6 normal_matrix = Matrix6::Zero();
   Vector6 right = Vector6::Zero();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const double weight = tukey_weight(pairs.nearest[i].distance, scale);
+    const double weight = tukey_weight(pairs.nearest[i].distance / (tukey * scale));
     const ScanSurface::Surfel& surfel = scan.surfels[pairs.nearest[i].index];
     if (weight <= 0 || surfel.at_edge) continue;  // the tangent plane continues beyond the edge of the scan
     const Eigen::Vector3d point = motion(cloud[i]);
@@ -236,11 +230,15 @@ Registration register_cloud(const Points& cloud, const ScanModel& scan, const Re
   std::vector<Pose> poses = distinct_poses(ranked_poses(cloud, scan, options), cloud_axes, refined_pose_count);
   for (Pose& pose : poses) pose = refine(some, scan, scan.voxels, pose, options);
   std::stable_sort(poses.begin(), poses.end(), [](const Pose& a, const Pose& b) { return a.rms < b.rms; });
-  const Pose best = refine(subsample_evenly(cloud, final_points), scan, scan.scan, poses.front(), options);
+  const Points many = subsample_evenly(cloud, final_points);
+  const Pose best = refine(many, scan, scan.scan, poses.front(), options);
   Registration result{best.motion, best.rms, std::numeric_limits<double>::infinity()};
   for (const Pose& pose : poses) {
-    if (is_distinct(pose.motion, poses.front().motion, cloud_axes))
-      result.next_rms = std::min(result.next_rms, pose.rms);
+    if (!is_distinct(pose.motion, best.motion, cloud_axes)) continue;
+    const Pose next = refine(many, scan, scan.scan, pose, options);
+    if (!is_distinct(next.motion, best.motion, cloud_axes)) continue;
+    result.next_rms = next.rms;
+    break;
   }
   return result;
 }

@@ -78,17 +78,12 @@ Table road_table(const std::vector<SourceTrials>& sources) {
 
 void add_scores(const std::string& name, const std::vector<DisparityScore>& scores, Table& table) {
   for (std::size_t i = 0; i < scores.size(); ++i) {
-    table.rows.push_back({Cell(name), Cell(robustness_methods()[i])});
-    const std::vector<Cell> cells = score_cells(scores[i]);
-    table.rows.back().insert(table.rows.back().end(), cells.begin(), cells.end());
+    table.rows.push_back(score_cells({name, robustness_methods()[i]}, scores[i]));
   }
 }
 
 Table empty_score_table(const std::string& title, const Column& first) {
-  Table table{title, {first, {"method", "method"}}, {}};
-  const std::vector<Column> columns = score_columns(robustness_tolerances_px());
-  table.columns.insert(table.columns.end(), columns.begin(), columns.end());
-  return table;
+  return {title, score_columns({first, {"method", "method"}}, robustness_tolerances_px()), {}};
 }
 
 Table score_table(const std::vector<SourceTrials>& sources) {
@@ -123,9 +118,8 @@ Table drive_table(const std::vector<Drive>& drives, const MethodSettings& method
   return table;
 }
 
-/// Every frame with its status, plane and scores.
-nlohmann::ordered_json frames_json(const SourceTrials& source) {
-  nlohmann::ordered_json frames = nlohmann::ordered_json::array();
+/// Adds every frame with its status, plane and scores: sources of one name share their list.
+void add_frames(const SourceTrials& source, nlohmann::ordered_json& frames) {
   for (const RobustnessTrial& trial : source.trials) {
     Table scores = empty_score_table("", {"frame", "frame"});
     add_scores(trial.frame, trial.scores, scores);
@@ -134,7 +128,6 @@ nlohmann::ordered_json frames_json(const SourceTrials& source) {
                       {"plane_px", Cell(trial.plane_px, 2).json()},
                       {"scores", scores.json()}});
   }
-  return frames;
 }
 
 void robustness(const RobustnessArguments& arguments) {
@@ -162,7 +155,7 @@ void robustness(const RobustnessArguments& arguments) {
   if (!found.drives.empty()) fmt::print("{}\n", drives.text());
   if (!arguments.json.empty()) {
     nlohmann::ordered_json document{{"roads", roads.json()}, {"disparities", scores.json()}, {"drives", drives.json()}};
-    for (const SourceTrials& source : sources) document["frames"][source.name] = frames_json(source);
+    for (const SourceTrials& source : sources) add_frames(source, document["frames"][source.name]);
     write_report(arguments.json, document);
   }
   if (arguments.figure.empty()) return;
@@ -177,7 +170,7 @@ constexpr const char* robustness_footer =
     R"(DIR and its subfolders are searched for sources, recognised by content: the layout of KITTI Stereo 2015 with masks in
 road/; folders of one scene each (left.png, right.png, disparity.tiff, occ.png, region.png, calibration.yaml); recordings
 with a calibration.yaml. Scores are those of the pixels of the road. plane: largest difference over the road of the plane
-before matching to the robust fit to the truth, median of the frames; – where most frames have no road. The worst frame
+before matching to the robust fit to the truth, median of the frames; ∞ where most frames have no road. The worst frame
 has no road, or the most errors above 1 px.
 
 Example:
@@ -191,7 +184,7 @@ void add_robustness(CLI::App& evaluate) {
   command->footer(robustness_footer);
   const auto arguments = std::make_shared<RobustnessArguments>();
   command->add_option("DIR", arguments->folders, "Folders of sources");
-  command->add_option("--scenes", arguments->scenes, "Number of rendered random roads, and of streets")
+  command->add_option("--scenes", arguments->scenes, "Number of rendered random roads, of streets and of wide scenes")
       ->type_name("N")
       ->capture_default_str();
   add_method_options(*command, arguments->methods);

@@ -36,16 +36,23 @@ struct RollArguments {
 constexpr const char* roll_note =
     "Rows with camber: the road is not planar (1 cm lower 1.6 m beside its crown). The true roll is that of the "
     "tangent\n"
-    "plane at the crown; the visible part of the road is not symmetric, which biases the best plane.\n";
+    "plane at the crown; the visible part of the road is not symmetric, which biases the best plane. lost: pairs "
+    "whose\n"
+    "road was not found, which are no trials.\n";
 
 Table make_table(const std::vector<RollErrors>& all) {
-  Table table{
-      "Error of the roll angle, rad",
-      {{"maps", "maps"}, {"solver", "solver"}, {"trials", "trials"}, {"mean", "mean_rad"}, {"max", "max_rad"}},
-      {{"published: EISATS, rotated", "gradient descent", Cell(NAN, 0), Cell(published_mean_rad, 3), Cell(NAN, 6)}}};
+  Table table{"Error of the roll angle, rad",
+              {{"maps", "maps"},
+               {"solver", "solver"},
+               {"trials", "trials"},
+               {"lost", "lost"},
+               {"mean", "mean_rad"},
+               {"max", "max_rad"}},
+              {{"published: EISATS, rotated", "gradient descent", Cell(NAN, 0), Cell(NAN, 0),
+                Cell(published_mean_rad, 3), Cell(NAN, 6)}}};
   for (const RollErrors& errors : all) {
     table.rows.push_back({errors.maps, errors.solver, Cell(static_cast<double>(errors.error_rad.size()), 0),
-                          Cell(errors.mean_rad(), 6), Cell(errors.max_rad(), 6)});
+                          Cell(errors.lost, 0), Cell(errors.mean_rad(), 6), Cell(errors.max_rad(), 6)});
   }
   return table;
 }

@@ -118,6 +118,11 @@ std::vector<RollErrors> run_pairs(const std::string& preset_name, double road_ca
       const synth::SyntheticPair pair = synth::render(scene, options.methods.threads);
       Pipeline pipeline(pipeline_options, pair.calibration);
       const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
+      if (!result.roll_found) {
+        ++own.lost;
+        ++descent.lost;
+        continue;
+      }
       own.roll_deg.push_back(angle);
       own.error_rad.push_back(result.geometry.roll_rad - pair.roll_rad);
       if (own.solver == descent.solver) continue;
@@ -129,7 +134,7 @@ std::vector<RollErrors> run_pairs(const std::string& preset_name, double road_ca
       descent.error_rad.push_back(estimate.roll_rad - pair.roll_rad);
     }
   }
-  if (descent.roll_deg.empty()) return {own};
+  if (own.solver == descent.solver) return {own};
   return {own, descent};
 }
 
@@ -142,7 +147,7 @@ double RollErrors::mean_rad() const {
 }
 
 double RollErrors::max_rad() const {
-  double max = 0;
+  double max = error_rad.empty() ? NAN : 0;
   for (const double error : error_rad) max = std::max(max, std::abs(error));
   return max;
 }

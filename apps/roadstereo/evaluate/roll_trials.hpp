@@ -14,6 +14,7 @@ struct RollErrors {
   std::string solver;             ///< value of `--set roll.solver`
   std::vector<double> roll_deg;   ///< true roll of each trial
   std::vector<double> error_rad;  ///< estimated minus true
+  int lost = 0;                   ///< pairs whose road was not found, which have no error
   double mean_rad() const;        ///< mean magnitude
   double max_rad() const;         ///< maximum magnitude
 };
@@ -22,7 +23,7 @@ struct RollTrialOptions {
   double max_roll_deg = 20;          ///< of exact maps, in both directions
   double max_matched_roll_deg = 10;  ///< of matched pairs, in both directions
   int angles = 9;                    ///< number of angles from −max to +max, 1 … 1000
-  MethodSettings methods;            ///< threads, and options of the default pipeline
+  MethodSettings methods;            ///< threads, and options of the presets that match pairs
 };
 
 struct NamedSolver {

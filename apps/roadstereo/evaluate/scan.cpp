@@ -2,10 +2,10 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <limits>
 #include <memory>
 
+#include "core/max_disparities.hpp"
 #include "evaluate/experiments.hpp"
 #include "evaluate/methods.hpp"
 #include "evaluate/report.hpp"
@@ -79,9 +79,7 @@ std::vector<Cell> cells(const Row& row) {
           Cell(score.rms_covered_mm, 3),
           Cell(score.rms_or_missing_mm, 3),
           Cell(row.registration.rms, 3),
-          Cell(std::isfinite(row.registration.next_rms) ? row.registration.next_rms
-                                                        : std::numeric_limits<double>::quiet_NaN(),
-               3)};
+          Cell(row.registration.next_rms, 3)};
 }
 
 /// Row of the means of a method over all pairs.
@@ -124,11 +122,11 @@ void print(const std::vector<Row>& rows, const ScanArguments& arguments) {
 }
 
 /// Throws Error if the sizes of cloud and scan differ by more than a factor of 4, for example because of wrong units.
-void check_extents(const Points& cloud, const PrincipalAxes& scan) {
+void check_extents(const std::string& file, const Points& cloud, const PrincipalAxes& scan) {
   constexpr double max_ratio = 4;
   const double ratio = principal_axes(cloud).sigma[0] / scan.sigma[0];
-  if (ratio > 1 / max_ratio && ratio < max_ratio) return;
-  fail("the cloud is ", ratio,
+  if (cloud.empty() || (ratio > 1 / max_ratio && ratio < max_ratio)) return;
+  fail(file, ": the cloud is ", ratio,
        " times as large as the scan; the factor must be between 1/4 and 4 "
        "(units: --cloud-unit-mm, --scan-unit-mm)");
 }
@@ -136,7 +134,7 @@ void check_extents(const Points& cloud, const PrincipalAxes& scan) {
 void scan_cloud(const ScanArguments& arguments) {
   const Points cloud = read_points(arguments.inputs[0], arguments.cloud_unit_mm);
   const ScanModel scan(read_points(arguments.inputs[1], arguments.scan_unit_mm));
-  check_extents(cloud, scan.axes);
+  check_extents(arguments.inputs[0], cloud, scan.axes);
   const Registration registration = register_cloud(cloud, scan, registration_options(arguments));
   const std::vector<ScanDistance> distances = closest_distances(cloud, scan, registration.motion);
   const std::size_t labelled = arguments.labelled == 0 ? cloud.size() : arguments.labelled;
@@ -153,13 +151,19 @@ void scan_pair(const ScanFiles& files, const ScanArguments& arguments, std::vect
   const ScanModel scan(read_points(files.scan, arguments.scan_unit_mm));
   if (pictures != nullptr) pictures->push_back(pothole_picture(files.name, pair, label));
   for (const std::string& method : arguments.compared) {
-    const Image<float> map = run_method(method, {pair, arguments.disparities, true, files.name}, arguments.methods);
-    const LabelledPoints found = labelled_points(map, label, *pair.calibration);
-    check_extents(found.points, scan.axes);
-    const Registration registration = register_cloud(found.points, scan, registration_options(arguments));
-    const std::vector<ScanDistance> distances = closest_distances(found.points, scan, registration.motion);
-    rows.push_back({files.name, method, score_distances(distances, found.labelled), registration});
-    if (pictures != nullptr) pictures->push_back(distance_picture(method, rows.back().score, found, distances, label));
+    try {
+      const Image<float> map = run_method(method, {pair, arguments.disparities, true, files.name}, arguments.methods);
+      const LabelledPoints found = labelled_points(map, label, *pair.calibration);
+      const Registration registration = register_cloud(found.points, scan, registration_options(arguments));
+      const std::vector<ScanDistance> distances = closest_distances(found.points, scan, registration.motion);
+      rows.push_back({files.name, method, score_distances(distances, found.labelled), registration});
+      if (pictures != nullptr)
+        pictures->push_back(distance_picture(method, rows.back().score, found, distances, label));
+    } catch (const SystemError&) {
+      throw;
+    } catch (const Error& error) {
+      fail(files.name, ", ", method, ": ", error.what());
+    }
   }
 }
 
@@ -251,7 +255,7 @@ void add_scan(CLI::App& evaluate) {
       ->take_all()
       ->capture_default_str();
   command->add_option("--disparities", arguments->disparities, "Number of disparities for OpenCV's matchers")
-      ->check(CLI::Range(16, 1024))
+      ->check(CLI::Range(16, max_disparities))
       ->capture_default_str();
   command->add_flag("--robust", arguments->robust, "Omit the final least-squares step of the registration");
   add_method_options(*command, arguments->methods);

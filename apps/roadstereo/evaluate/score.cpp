@@ -38,8 +38,8 @@ void score(const ScoreArguments& arguments) {
   }
   const Table table{fmt::format("{} against {}: {} of {} labelled pixels have a disparity", arguments.map,
                                 arguments.truth, result.valid_pixels, result.labelled_pixels),
-                    score_columns(arguments.tolerances_px),
-                    {score_cells(result)}};
+                    score_columns({}, arguments.tolerances_px),
+                    {score_cells({}, result)}};
   if (!arguments.json.empty()) write_report(arguments.json, table.json().front());
   if (!arguments.figure.empty()) {
     const double highest = *std::max_element(arguments.tolerances_px.begin(), arguments.tolerances_px.end());

@@ -21,15 +21,17 @@ double mean_of(const std::vector<DisparityScore>& scores, const Value& value_of)
   return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
-}  // namespace
-
+/// "0.5", "3".
 std::string tolerance_text(double tolerance_px) {
   return fmt::format("{:g}", tolerance_px);
 }
 
-std::vector<Column> score_columns(const std::vector<double>& tolerances_px) {
-  std::vector<Column> columns{
-      {"e_r px", "e_r_px"}, {"bias px", "mean_error_px"}, {"sd px", "error_sd_px"}, {"median px", "median_error_px"}};
+}  // namespace
+
+std::vector<Column> score_columns(std::vector<Column> columns, const std::vector<double>& tolerances_px) {
+  columns.insert(
+      columns.end(),
+      {{"e_r px", "e_r_px"}, {"bias px", "mean_error_px"}, {"sd px", "error_sd_px"}, {"median px", "median_error_px"}});
   for (const double tolerance : tolerances_px) {
     const std::string text = tolerance_text(tolerance);
     columns.push_back({"e_p(" + text + ") %", "e_p_" + text + "px_percent"});
@@ -42,9 +44,9 @@ std::vector<Column> score_columns(const std::vector<double>& tolerances_px) {
   return columns;
 }
 
-std::vector<Cell> score_cells(const DisparityScore& score) {
+std::vector<Cell> score_cells(std::vector<Cell> cells, const DisparityScore& score) {
   constexpr double percent = 100;
-  std::vector<Cell> cells{{score.rms_px, 3}, {score.mean_px, 3}, {score.sd_px, 3}, {score.median_px, 3}};
+  for (const double error : {score.rms_px, score.mean_px, score.sd_px, score.median_px}) cells.emplace_back(error, 3);
   for (const double share : score.bad_share) cells.emplace_back(percent * share, 3);
   cells.emplace_back(percent * score.density, 2);
   for (const double share : score.bad_or_missing_share) cells.emplace_back(percent * share, 3);
@@ -58,11 +60,9 @@ std::string score_legend() {
 
 DisparityScore mean_score(const std::vector<DisparityScore>& scores) {
   DisparityScore mean;
-  for (const DisparityScore& score : scores) {
-    mean.labelled_pixels += score.labelled_pixels;
-    mean.valid_pixels += score.valid_pixels;
-  }
-  mean.density = mean_of(scores, [](const DisparityScore& score) { return score.density; });
+  mean.density = mean_of(scores, [](const DisparityScore& score) {
+    return score.labelled_pixels > 0 ? score.density : std::numeric_limits<double>::quiet_NaN();
+  });
   mean.rms_px = mean_of(scores, [](const DisparityScore& score) { return score.rms_px; });
   mean.mean_px = mean_of(scores, [](const DisparityScore& score) { return score.mean_px; });
   mean.sd_px = mean_of(scores, [](const DisparityScore& score) { return score.sd_px; });

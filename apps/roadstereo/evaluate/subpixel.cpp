@@ -72,10 +72,11 @@ nlohmann::ordered_json phases_json(const std::vector<SubPixelTrial>& trials) {
 
 std::string goal_line(const std::vector<SubPixelTrial>& trials) {
   double bias = 0, ratio = 0;
+  const auto worse = [](double one, double other) { return one >= other || std::isnan(one) ? one : other; };
   for (const SubPixelTrial& trial : trials) {
     if (trial.method != "default") continue;
-    bias = std::max(bias, largest_bias_px(trial.bias));
-    ratio = std::max(ratio, trial.noise.ratio());
+    bias = worse(bias, largest_bias_px(trial.bias));
+    ratio = worse(ratio, trial.noise.ratio());
   }
   const auto outcome = [](bool met) { return met ? "met" : "missed"; };
   return fmt::format(

@@ -24,14 +24,10 @@ struct SynthAccuracyArguments {
 };
 
 Table group_table(const std::string& title, const ScoresByGroup& groups, const std::vector<std::string>& names) {
-  Table table{title, {{"group", "group"}, {"method", "method"}}, {}};
-  const auto columns = score_columns(synth_tolerances_px());
-  table.columns.insert(table.columns.end(), columns.begin(), columns.end());
+  Table table{title, score_columns({{"group", "group"}, {"method", "method"}}, synth_tolerances_px()), {}};
   for (std::size_t group = 0; group < groups.size(); ++group) {
     for (std::size_t i = 0; i < names.size(); ++i) {
-      table.rows.push_back({Cell(synth_groups()[group].name), Cell(names[i])});
-      const std::vector<Cell> cells = score_cells(groups[group][i]);
-      table.rows.back().insert(table.rows.back().end(), cells.begin(), cells.end());
+      table.rows.push_back(score_cells({synth_groups()[group].name, names[i]}, groups[group][i]));
     }
   }
   return table;

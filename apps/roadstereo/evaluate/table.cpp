@@ -31,7 +31,8 @@ std::string line(std::string text) {
 
 std::string Cell::text() const {
   if (!is_number_) return text_;
-  return std::isfinite(value_) ? fmt::format("{:.{}f}", value_, decimals_) : "–";
+  if (std::isinf(value_)) return value_ > 0 ? "∞" : "−∞";
+  return std::isnan(value_) ? "–" : fmt::format("{:.{}f}", value_, decimals_);
 }
 
 nlohmann::ordered_json Cell::json() const {

@@ -6,7 +6,8 @@
 
 namespace roadstereo::cli {
 
-/// Cell of a table: text, or a number with its number of decimals. NaN is printed as "–" and is null in JSON.
+/// Cell of a table: text, or a number with its number of decimals. NaN is printed as "–"; both it and infinity are null
+/// in JSON.
 class Cell {
  public:
   Cell(std::string text) : text_(std::move(text)) {}
