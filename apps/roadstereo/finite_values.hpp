@@ -15,4 +15,7 @@ double median(std::vector<double> values);
 /// Returns the sorted value nearest to position share · (n − 1), `share` 0 … 1; NaN if there are none.
 double quantile(std::vector<double> values, double share);
 
+/// Returns the root mean square; NaN if there are none.
+double rms(const std::vector<double>& values);
+
 }  // namespace roadstereo::cli

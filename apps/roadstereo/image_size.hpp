@@ -2,12 +2,9 @@
 
 #include <string>
 
-namespace roadstereo::cli {
+#include "core/require_size.hpp"
 
-struct ImageSize {
-  int width = 0;   ///< pixels
-  int height = 0;  ///< pixels
-};
+namespace roadstereo::cli {
 
 /// Parses "640x360", the argument of --size. Throws Error if it is not two positive numbers.
 ImageSize parse_image_size(const std::string& text);

@@ -9,6 +9,7 @@
 #include "evaluate/lambda_sweep.hpp"
 #include "evaluate/road_flatness.hpp"
 #include "evaluate/roll_maps.hpp"
+#include "evaluate/roll_trials.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {
@@ -76,6 +77,17 @@ TEST(AddOutliers, ChangesRequestedShareOfValidPixels) {
   EXPECT_TRUE(std::isnan(map(5, 5)));
   EXPECT_NEAR(spoilt / static_cast<double>(map.pixels()), 0.05, 0.003);  // five standard deviations
   EXPECT_NEAR(sum / spoilt, 25, 1);
+}
+
+TEST(SlowRollTrials, PairWithoutRoadIsNoEstimate) {
+  RollTrialOptions options;
+  options.angles = 1;
+  options.methods.settings = {"road_model.min_evidence=1"};
+  for (const RollErrors& errors : run_matched_trials(options)) {
+    EXPECT_EQ(errors.lost, 3) << errors.maps;
+    EXPECT_TRUE(errors.error_rad.empty());
+    EXPECT_TRUE(std::isnan(errors.max_rad()));
+  }
 }
 
 TEST(LambdaSweep, ValuesHaveEqualRatios) {

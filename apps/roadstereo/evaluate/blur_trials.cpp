@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "benchmark_frames.hpp"
-#include "evaluate/roll_maps.hpp"
+#include "evaluate/rendered_pair.hpp"
 #include "evaluation/disparity_score.hpp"
 #include "evaluation/peer_matchers.hpp"
 #include "progress.hpp"
@@ -34,9 +34,7 @@ BlurredPair render_blurred(const BlurOptions& options, double length_px, double 
   BlurredPair blurred;
   blurred.truth = exact_map(rendered);
   blurred.visible = std::move(rendered.visible);
-  blurred.pair.left = std::move(rendered.left);
-  blurred.pair.right = std::move(rendered.right);
-  blurred.pair.calibration = rendered.calibration;
+  blurred.pair = pair_of(rendered);
   return blurred;
 }
 

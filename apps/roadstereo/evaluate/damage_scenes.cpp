@@ -8,12 +8,12 @@
 #include <map>
 
 #include "evaluate/pair_files.hpp"
+#include "evaluate/rendered_pair.hpp"
 #include "evaluate/rutted_scenes.hpp"
 #include "evaluate/scene_folders.hpp"
 #include "finite_values.hpp"
 #include "progress.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/io/image_file.hpp"
 #include "roadstereo/pipeline.hpp"
 #include "roadstereo/resolution_limits.hpp"
 
@@ -223,12 +223,7 @@ LabelledScene render_scene(const SceneSet& set, int index) {
   const synth::Scene scene = set.wide   ? synth::random_wide_scene(seed)
                              : set.ruts ? rutted_scene(seed)
                                         : synth::random_scene(seed, set.degraded);
-  LabelledScene rendered{fmt::format("{:06}", seed), synth::render(scene), scene.rig.camera_height_m};
-  if (const int quality = scene.degradation.jpeg_quality; quality > 0) {
-    rendered.pair.left = io::with_jpeg_loss(rendered.pair.left, quality);
-    rendered.pair.right = io::with_jpeg_loss(rendered.pair.right, quality);
-  }
-  return rendered;
+  return {fmt::format("{:06}", seed), render_recorded(scene), scene.rig.camera_height_m};
 }
 
 LabelledScene read_scene(const std::filesystem::path& folder) {
@@ -246,14 +241,6 @@ LabelledScene read_scene(const std::filesystem::path& folder) {
   scene.pair.damages = std::move(truth.damages);
   scene.camera_height_m = truth.camera_height_m;
   return scene;
-}
-
-StereoPair pair_of(const synth::SyntheticPair& rendered) {
-  StereoPair pair;
-  pair.left = rendered.left;
-  pair.right = rendered.right;
-  pair.calibration = rendered.calibration;
-  return pair;
 }
 
 void add_scene(const LabelledScene& scene, const DamageMethod& method, SceneResults& results) {

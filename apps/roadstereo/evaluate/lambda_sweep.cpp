@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "evaluate/rendered_pair.hpp"
 #include "evaluate/roll_maps.hpp"
 #include "roadstereo/roll.hpp"
 

@@ -30,12 +30,6 @@ standard error that no border cuts, as in the report of a flight. Memory: growth
 first fifth of the frames.
 )";
 
-double rms(const std::vector<double>& values) {
-  double squares = 0;
-  for (const double value : values) squares += value * value;
-  return values.empty() ? NAN : std::sqrt(squares / static_cast<double>(values.size()));
-}
-
 /// RMS of the differences relative to what their standard errors say, over all roads.
 double ratio(const std::vector<PassDifference>& differences) {
   double squares = 0, variances = 0;

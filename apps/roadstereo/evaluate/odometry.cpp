@@ -29,12 +29,6 @@ error of its link; roadstereo links to a reference up to several frames before. 
 of links, and of poses against the first frame, 1 if their covariances are right. share: of the time of matching.
 )";
 
-double rms(const std::vector<double>& values) {
-  double squares = 0;
-  for (const double value : values) squares += value * value;
-  return values.empty() ? NAN : std::sqrt(squares / static_cast<double>(values.size()));
-}
-
 Table odometry_table(const OdometryTrials& trials, const std::string& title) {
   Table table{title,
               {{"method", "method"},

@@ -9,6 +9,7 @@
 #include "core/degrees.hpp"
 #include "evaluate/error_map.hpp"
 #include "evaluate/kitti_frames.hpp"
+#include "evaluate/rendered_pair.hpp"
 #include "evaluate/roll_maps.hpp"
 #include "evaluation/picture_sheet.hpp"
 #include "evaluation/tint.hpp"

@@ -2,38 +2,28 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <random>
-#include <utility>
 
-#include "roadstereo/io/image_file.hpp"
+#include "evaluate/rendered_pair.hpp"
 #include "roadstereo/synth.hpp"
+#include "synth/hash.hpp"
 
 namespace roadstereo::cli {
 namespace {
 
-/// `plane`: that of Z = 0.
-LabelledFrame render_labelled(const synth::Scene& scene, int threads, Image<double>& truth, DisparityPlane& plane) {
-  synth::SyntheticPair rendered = synth::render(scene, threads);
+/// The road is what both cameras see.
+LabelledFrame labelled(const synth::SyntheticPair& rendered) {
   LabelledFrame frame;
-  frame.pair.left = std::move(rendered.left);
-  frame.pair.right = std::move(rendered.right);
-  frame.pair.calibration = rendered.calibration;
-  frame.road = std::move(rendered.visible);
-  truth = std::move(rendered.disparity);
-  plane = rendered.plane;
-  frame.truth.resize(truth.width(), truth.height());
-  std::transform(truth.row(0), truth.row(0) + truth.pixels(), frame.truth.row(0),
-                 [](double disparity) { return static_cast<float>(disparity); });
+  frame.pair = pair_of(rendered);
+  frame.truth = exact_map(rendered);
+  frame.road = rendered.visible;
   frame.disparities = disparities_of(frame.truth, 0);
   return frame;
 }
 
 LabelledFrame render_road(std::uint64_t seed, int threads) {
-  Image<double> truth;
-  DisparityPlane plane;
-  return render_labelled(synth::random_scene(seed, true), threads, truth, plane);
+  return labelled(render_recorded(synth::random_scene(seed, true), threads));
 }
 
 /// Height of the parked cars on the left, metres: a kerb down to the street.
@@ -42,7 +32,7 @@ constexpr double car_height_m = 1;
 synth::Scene draw_street(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto uniform = [&random](double lower, double upper) {
-    return lower + (upper - lower) * static_cast<double>(random() >> 11) * 0x1.0p-53;
+    return lower + (upper - lower) * synth::unit_interval(random());
   };
   synth::Scene scene = synth::random_scene(seed, true);
   scene.supersampling = 2;
@@ -68,35 +58,24 @@ synth::Scene draw_street(std::uint64_t seed) {
 
 LabelledFrame render_street(std::uint64_t seed, int threads) {
   const synth::Scene scene = draw_street(seed);
-  Image<double> truth;
-  DisparityPlane top;
-  LabelledFrame frame = render_labelled(scene, threads, truth, top);
+  const synth::SyntheticPair rendered = render_recorded(scene, threads);
+  LabelledFrame frame = labelled(rendered);
   // The street is parallel to the plane of the rig, a car's height deeper.
   const double share = scene.rig.camera_height_m / (scene.rig.camera_height_m + car_height_m);
-  for (int v = 0; v < truth.height(); ++v) {
-    for (int u = 0; u < truth.width(); ++u) {
-      const double street = share * top.disparity(u, v);
-      if (!(std::abs(truth(u, v) - street) < 1e-6)) (*frame.road)(u, v) = 0;
+  for (int v = 0; v < frame.truth.height(); ++v) {
+    for (int u = 0; u < frame.truth.width(); ++u) {
+      const double street = share * rendered.plane.disparity(u, v);
+      if (!(std::abs(rendered.disparity(u, v) - street) < 1e-6)) (*frame.road)(u, v) = 0;
     }
   }
   return frame;
 }
 
 LabelledFrame render_wide(std::uint64_t seed, int threads) {
-  const synth::Scene scene = synth::random_wide_scene(seed);
-  synth::SyntheticPair rendered = synth::render(scene, threads);
-  const int quality = scene.degradation.jpeg_quality;
-  LabelledFrame frame;
-  frame.pair.left = quality > 0 ? io::with_jpeg_loss(rendered.left, quality) : std::move(rendered.left);
-  frame.pair.right = quality > 0 ? io::with_jpeg_loss(rendered.right, quality) : std::move(rendered.right);
-  frame.pair.calibration = rendered.calibration;
-  frame.truth.resize(rendered.disparity.width(), rendered.disparity.height());
-  std::transform(rendered.disparity.row(0), rendered.disparity.row(0) + rendered.disparity.pixels(), frame.truth.row(0),
-                 [](double disparity) { return static_cast<float>(disparity); });
-  frame.disparities = disparities_of(frame.truth, 0);
-  frame.road = std::move(rendered.road);
+  const synth::SyntheticPair rendered = render_recorded(synth::random_wide_scene(seed), threads);
+  LabelledFrame frame = labelled(rendered);
   for (std::size_t i = 0; i < frame.road->pixels(); ++i) {
-    if (rendered.visible.row(0)[i] == 0) frame.road->row(0)[i] = 0;
+    if (rendered.road.row(0)[i] == 0) frame.road->row(0)[i] = 0;
   }
   return frame;
 }

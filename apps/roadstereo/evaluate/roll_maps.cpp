@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/degrees.hpp"
+#include "synth/hash.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -29,12 +30,6 @@ float bilinear_value(const Image<float>& map, double u, double v) {
   return static_cast<float>((1 - lower_share) * row_value(top) + lower_share * row_value(top + 1));
 }
 
-/// Uniform value in [0, 1) from the upper 53 bits. std::uniform_real_distribution differs between standard libraries.
-double uniform(std::mt19937_64& random) {
-  constexpr int unused_bits = 11;
-  return static_cast<double>(random() >> unused_bits) * 0x1p-53;
-}
-
 }  // namespace
 
 synth::Scene roll_scene(const RollView& view, double roll_deg, bool damaged, double camber) {
@@ -53,14 +48,6 @@ synth::Scene roll_scene(const RollView& view, double roll_deg, bool damaged, dou
                       {-0.40 * distance, ahead + 0.25 * distance, 0.09 * distance, 0.06, 0.30, 0.30, 62},
                       {0.20 * distance, ahead + 0.40 * distance, 0.12 * distance, -0.05, 0.20, 0.70, 63}};
   return scene;
-}
-
-Image<float> exact_map(const synth::SyntheticPair& pair) {
-  Image<float> map(pair.disparity.width(), pair.disparity.height());
-  for (int v = 0; v < map.height(); ++v) {
-    for (int u = 0; u < map.width(); ++u) map(u, v) = static_cast<float>(pair.disparity(u, v));
-  }
-  return map;
 }
 
 Image<float> rotate_map(const Image<float>& map, double roll_rad, Resampling resampling) {
@@ -86,8 +73,8 @@ void add_outliers(Image<float>& map, double share, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   for (int v = 0; v < map.height(); ++v) {
     for (int u = 0; u < map.width(); ++u) {
-      if (std::isnan(map(u, v)) || uniform(random) >= share) continue;
-      map(u, v) = static_cast<float>(uniform(random) * static_cast<double>(max_disparity));
+      if (std::isnan(map(u, v)) || synth::unit_interval(random()) >= share) continue;
+      map(u, v) = static_cast<float>(synth::unit_interval(random()) * static_cast<double>(max_disparity));
     }
   }
 }

@@ -17,9 +17,6 @@ struct RollView {
 /// roll estimate that is not robust.
 synth::Scene roll_scene(const RollView& view, double roll_deg, bool damaged, double camber);
 
-/// Exact disparities of a rendered pair in single precision, pixels; NaN for sky.
-Image<float> exact_map(const synth::SyntheticPair& pair);
-
 enum class Resampling { nearest, bilinear };
 
 /// Rotate a map about the centre of the image, so that a road without roll gets the roll `roll_rad` (eqs. (18), x, and

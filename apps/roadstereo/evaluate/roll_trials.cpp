@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/degrees.hpp"
+#include "evaluate/rendered_pair.hpp"
 #include "evaluate/roll_maps.hpp"
 #include "roadstereo/pipeline.hpp"
 
@@ -15,6 +16,7 @@ namespace {
 
 constexpr double camber = 0.004;  ///< 1 cm at 1.6 m beside the crown
 constexpr double outlier_share = 0.05;
+constexpr double max_matched_roll_deg = 10;  ///< of matched pairs, in both directions
 
 /// UAV at two heights, and a camera that looks along the road.
 constexpr RollView views[] = {{2.6, 60}, {4.0, 45}, {1.65, 20}};
@@ -111,7 +113,7 @@ std::vector<RollErrors> run_pairs(const std::string& preset_name, double road_ca
   RollErrors own{maps, solver_name(pipeline_options.roll.solver), {}, {}};
   RollErrors descent{maps, solver_name(RollSolver::gradient_descent), {}, {}};
   for (const RollView& view : views) {
-    for (const double angle : symmetric_angles(options.max_matched_roll_deg, options.angles)) {
+    for (const double angle : symmetric_angles(max_matched_roll_deg, options.angles)) {
       synth::Scene scene = roll_scene(view, angle, true, road_camber);
       scene.supersampling = 2;
       scene.degradation.noise_grey = noise_grey;

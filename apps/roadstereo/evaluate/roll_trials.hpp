@@ -20,10 +20,9 @@ struct RollErrors {
 };
 
 struct RollTrialOptions {
-  double max_roll_deg = 20;          ///< of exact maps, in both directions
-  double max_matched_roll_deg = 10;  ///< of matched pairs, in both directions
-  int angles = 9;                    ///< number of angles from −max to +max, 1 … 1000
-  MethodSettings methods;            ///< threads, and options of the presets that match pairs
+  double max_roll_deg = 20;  ///< of exact maps, in both directions
+  int angles = 9;            ///< number of angles from −max to +max, 1 … 1000
+  MethodSettings methods;    ///< threads, and options of the presets that match pairs
 };
 
 struct NamedSolver {

@@ -5,13 +5,14 @@
 #include <string>
 
 #include "core/degrees.hpp"
+#include "synth/hash.hpp"
 
 namespace roadstereo::cli {
 
 synth::Scene rutted_scene(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto uniform = [&random](double lower, double upper) {
-    return lower + (upper - lower) * static_cast<double>(random() >> 11) * 0x1.0p-53;
+    return lower + (upper - lower) * synth::unit_interval(random());
   };
   synth::Scene scene = synth::random_scene(seed, true);
   scene.name = "rutted_" + std::to_string(seed);

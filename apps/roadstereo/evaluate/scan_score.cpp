@@ -7,16 +7,6 @@
 
 namespace roadstereo::cli {
 
-namespace {
-
-double mean_square(const std::vector<double>& values) {
-  double squares = 0;
-  for (const double value : values) squares += value * value;
-  return squares / static_cast<double>(values.size());
-}
-
-}  // namespace
-
 std::vector<ScanDistance> closest_distances(const Points& cloud, const ScanModel& scan, const RigidMotion& motion) {
   std::vector<ScanDistance> distances;
   distances.reserve(cloud.size());
@@ -45,9 +35,9 @@ ScanScore score_distances(const std::vector<ScanDistance>& distances, std::size_
   score.covered = covered.size();
   const auto measured = static_cast<double>(all.size());
   const auto missing = static_cast<double>(labelled - all.size());
-  const double squares = mean_square(all) * measured + missing * missing_mm * missing_mm;
-  score.rms_mm = std::sqrt(mean_square(all));
-  score.rms_covered_mm = std::sqrt(mean_square(covered));
+  score.rms_mm = rms(all);
+  score.rms_covered_mm = rms(covered);
+  const double squares = score.rms_mm * score.rms_mm * measured + missing * missing_mm * missing_mm;
   score.rms_or_missing_mm = std::sqrt(squares / static_cast<double>(labelled));
   score.median_mm = median(all);
   score.p90_mm = quantile(all, 0.9);

@@ -33,12 +33,6 @@ std::vector<double> sigmas_of(std::span<const SigmaSample> samples) {
   return sigmas;
 }
 
-double root_mean_square(const std::vector<double>& errors) {
-  double squares = 0;
-  for (const double error : errors) squares += error * error;
-  return std::sqrt(squares / static_cast<double>(errors.size()));
-}
-
 }  // namespace
 
 void add_sigma_samples(ImageView<const float> disparity, ImageView<const float> sigma, ImageView<const float> truth,
@@ -66,8 +60,8 @@ std::vector<SigmaBin> sigma_bins(std::vector<SigmaSample> samples, int bins) {
     if (first == end) continue;
     const std::span<const SigmaSample> part(samples.data() + first, end - first);
     const std::vector<double> errors = errors_of(part);
-    filled.push_back({part.size(), median(sigmas_of(part)), quantile(errors, one_sigma_share), root_mean_square(errors),
-                      share_within(part, 2)});
+    filled.push_back(
+        {part.size(), median(sigmas_of(part)), quantile(errors, one_sigma_share), rms(errors), share_within(part, 2)});
   }
   return filled;
 }

@@ -4,10 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
-#include "roadstereo/io/image_file.hpp"
+#include "evaluate/labelled_frame.hpp"
+#include "evaluate/rendered_pair.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -46,7 +45,7 @@ const std::vector<SynthGroup>& synth_groups() {
       {"blur", [](synth::Scene& scene) { scene.degradation.blur_px = 1.5; }},
       {"motion blur", blur_by_motion},
       {"over-exposure", [](synth::Scene& scene) { scene.degradation.exposure = 2.1; }},
-      {"JPEG 60", [](synth::Scene&) {}, 60},
+      {"JPEG 60", [](synth::Scene& scene) { scene.degradation.jpeg_quality = 60; }},
       {"row offset", [](synth::Scene& scene) { scene.degradation.row_offset_px = 0.5; }},
   };
   return groups;
@@ -78,27 +77,12 @@ std::string synth_frame(const SynthGroup& group, std::size_t scene) {
 
 SynthCase make_synth_case(const SynthGroup& group, synth::Scene scene, int threads) {
   group.degrade(scene);
-  synth::SyntheticPair rendered = synth::render(scene, threads);
-  SynthCase result;
-  result.pair.left = std::move(rendered.left);
-  result.pair.right = std::move(rendered.right);
-  if (group.jpeg_quality > 0) {
-    result.pair.left = io::with_jpeg_loss(result.pair.left, group.jpeg_quality);
-    result.pair.right = io::with_jpeg_loss(result.pair.right, group.jpeg_quality);
+  const synth::SyntheticPair rendered = render_recorded(scene, threads);
+  SynthCase result{pair_of(rendered), exact_map(rendered), rendered.visible, rendered.visible};
+  for (std::size_t i = 0; i < result.damage.pixels(); ++i) {
+    if (rendered.labels.row(0)[i] == 0) result.damage.row(0)[i] = 0;
   }
-  result.pair.calibration = rendered.calibration;
-  result.visible = std::move(rendered.visible);
-  result.truth.resize(rendered.disparity.width(), rendered.disparity.height());
-  result.damage.assign(rendered.labels.width(), rendered.labels.height(), 0);
-  double max_disparity = 0;
-  for (int v = 0; v < result.truth.height(); ++v) {
-    for (int u = 0; u < result.truth.width(); ++u) {
-      result.truth(u, v) = static_cast<float>(rendered.disparity(u, v));
-      if (rendered.labels(u, v) != 0) result.damage(u, v) = result.visible(u, v);
-      max_disparity = std::fmax(max_disparity, rendered.disparity(u, v));
-    }
-  }
-  result.disparities = static_cast<int>(std::ceil(max_disparity)) + 1;
+  result.disparities = disparities_of(result.truth, 0);
   return result;
 }
 

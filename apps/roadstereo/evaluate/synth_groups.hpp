@@ -20,7 +20,6 @@ void add_synth_sizes(CLI::App& command, std::string& sizes);
 struct SynthGroup {
   std::string name;
   void (*degrade)(synth::Scene& scene) = nullptr;
-  int jpeg_quality = 0;  ///< 1 … 100; 0: no compression
 };
 
 /// All groups: "clean" first, then one kind of degradation each.
