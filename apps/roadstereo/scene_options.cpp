@@ -17,7 +17,8 @@ void apply_size(synth::Rig& rig, const std::string& size) {
   rig.height = height;
 }
 
-void override_with(const std::optional<double>& given, double& value) {
+template <class Value>
+void override_with(const std::optional<Value>& given, Value& value) {
   if (given) value = *given;
 }
 
@@ -70,6 +71,7 @@ synth::Scene make_scene(const SceneOptions& options) {
   override_with(options.blur_px, scene.degradation.blur_px);
   override_with(options.gain_difference, scene.degradation.gain_difference);
   override_with(options.exposure, scene.degradation.exposure);
+  override_with(options.supersampling, scene.supersampling);
   scene.validate();
   return scene;
 }

@@ -30,7 +30,9 @@ struct DamageArguments {
 };
 
 constexpr const char* label_note =
-    "labels: connected components of the label; found: those that depressions cover by at least a third; false\n"
+    "labels: connected components of the label from 50 pixels; found: those that depressions cover by at least a "
+    "third; "
+    "false\n"
     "positives: depressions of which less than a third is labelled; measured: labelled pixels with a disparity.\n";
 
 constexpr const char* road_note =
@@ -55,15 +57,14 @@ void print_and_write(const DamageArguments& arguments, const Results& results, c
   fmt::print("{}\n{}\n{}{}", table.text(), note, confidence.text(), confidence_note);
   if (arguments.json.empty()) return;
   write_report(arguments.json, {{"experiment", "damage"},
-                                {"preset", arguments.preset},
+                                {"preset", results.front().method},
                                 {"rows", table.json()},
                                 {"confidence", confidence.json()},
                                 {"found_regions", regions_json(regions)}});
 }
 
-void score_synthetic(const DamageArguments& arguments) {
-  const std::vector<SceneResults> results =
-      score_scenes(arguments.set, damage_methods(arguments.preset, arguments.maps));
+void score_synthetic(const DamageArguments& arguments, const std::vector<DamageMethod>& methods) {
+  const std::vector<SceneResults> results = score_scenes(arguments.set, methods);
   const Table detection = detection_table(results);
   const Table measurement = measurement_table(results);
   fmt::print("{}\n", detection.text());
@@ -95,10 +96,11 @@ void run(DamageArguments arguments) {
   const fs::path root = arguments.data;
   const std::vector<DamageMethod> methods = damage_methods(arguments.preset, arguments.maps);
   if (!arguments.pairs_folder.empty()) {
-    if (!arguments.data.empty()) fail("--write-pairs is for synthetic roads; it must not be given with DIR");
     write_scene_pairs(arguments.set, arguments.pairs_folder);
   } else if (arguments.data.empty()) {
-    score_synthetic(arguments);
+    score_synthetic(arguments, methods);
+  } else if (!fs::is_directory(root)) {
+    fail(arguments.data, " is not a folder");
   } else if (fs::is_directory(root / "disp_tg")) {
     if (!arguments.maps.empty()) fail("--maps is for pairs; it must not be given with transformed maps (disp_tg)");
     const std::vector<LabelResult> results = score_labelled_maps(arguments.data);
@@ -111,7 +113,7 @@ void run(DamageArguments arguments) {
     print_and_write(arguments, results, road_table(results), road_note);
   } else if (!scene_folders(root).empty()) {
     arguments.set.folder = arguments.data;
-    score_synthetic(arguments);
+    score_synthetic(arguments, methods);
   } else {
     fail(arguments.data,
          ": the folder must contain disp_tg (maps with labels), label (pairs with labels), image_2 (KITTI) or folders "
@@ -126,7 +128,7 @@ void add_damage_accuracy(CLI::App& evaluate) {
   CLI::App* command =
       evaluate.add_subcommand("damage", "Detection and measurement of damage against labels or exact ground truth");
   const auto arguments = std::make_shared<DamageArguments>();
-  command->add_option(
+  CLI::Option* folder = command->add_option(
       "DIR", arguments->data,
       "Folder with disp_tg and label, with left, right and label, of KITTI, or with synthetic scenes; if absent, roads "
       "are rendered");
@@ -146,8 +148,9 @@ void add_damage_accuracy(CLI::App& evaluate) {
       ->excludes(degraded)
       ->excludes("--wide");
   add_maps_option(*command, arguments->maps);
-  add_write_pairs_option(*command, arguments->pairs_folder);
-  command->add_option("--json", arguments->json, "Also write the results to this file")->type_name("FILE");
+  add_json_option(*command, arguments->json);
+  add_write_pairs_option(*command, arguments->pairs_folder)->excludes("--preset")->excludes(folder);
+  for (const char* rendered : {"--scenes", "--seed", "--degraded", "--wide", "--ruts"}) folder->excludes(rendered);
   command->footer(
       "Examples:\n  roadstereo evaluate damage potholes\n  roadstereo evaluate damage --scenes 20 --json damage.json\n"
       "  roadstereo evaluate damage --scenes 20 --write-pairs pairs    # match them, then\n"

@@ -16,16 +16,6 @@
 namespace roadstereo::cli {
 namespace {
 
-synth::Scene first_scene(const FlightOptions& options) {
-  SceneOptions scene;
-  scene.name = options.scene;
-  scene.size = options.size;
-  synth::Scene first = make_scene(scene);
-  first.supersampling = options.supersampling;
-  first.validate();
-  return first;
-}
-
 Pipeline make_pipeline(const FlightOptions& options, const StereoCalibration& calibration) {
   return Pipeline(with_settings(preset(options.preset), options.methods), calibration);
 }
@@ -86,7 +76,8 @@ void FlightOptions::validate() const {
 std::vector<FlightTrial> run_flight_trials(const FlightOptions& options) {
   options.validate();
   const synth::FlightPath path = parse_flight(options.flight);
-  const synth::Scene first = first_scene(options);
+  const synth::Scene first =
+      make_scene({.name = options.scene, .size = options.size, .supersampling = options.supersampling});
   const StereoCalibration calibration = first.rig.calibration();
   for (int i = 0; i < options.frames; ++i) synth::flight_frame(first, path, i);  // throws before anything is rendered
   std::vector<Pipeline> pipelines;

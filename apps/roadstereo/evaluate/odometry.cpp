@@ -11,6 +11,7 @@
 #include "finite_values.hpp"
 #include "flight_path.hpp"
 #include "roadstereo/error.hpp"
+#include "source_options.hpp"
 
 namespace roadstereo::cli {
 namespace {
@@ -70,7 +71,7 @@ nlohmann::json loops_json(const OdometryTrials& trials) {
 
 void run(const OdometryArguments& arguments) {
   const OdometryTrialOptions& options = arguments.trials;
-  if (options.folder.empty() != arguments.flight) fail("evaluate odometry needs DIR or --flight");
+  if (options.folder.empty() && !arguments.flight) fail("evaluate odometry needs DIR or --flight");
   const OdometryTrials trials = run_odometry_trials(options);
   const std::string source = arguments.flight
                                  ? fmt::format("{} frames of scene {}, {}, flight {}, noise {}", options.frames,
@@ -111,9 +112,11 @@ void add_odometry(CLI::App& evaluate) {
       evaluate.add_subcommand("odometry", "Trajectory against known poses: a recording, or a rendered flight");
   const auto arguments = std::make_shared<OdometryArguments>();
   OdometryTrialOptions& trials = arguments->trials;
-  command->add_option("DIR", trials.folder,
-                      "Recording with poses.txt (KITTI: camera to world, a 3×4 row a frame) and calibration.yaml");
-  command->add_option("--calibration", trials.calibration, "Calibration of DIR")->type_name("FILE");
+  CLI::Option* folder =
+      command->add_option("DIR", trials.folder,
+                          "Recording with poses.txt (KITTI: camera to world, a 3×4 row a frame) and calibration.yaml");
+  add_calibration_option(*command, trials.calibration);
+  command->get_option("--calibration")->needs(folder);
   command
       ->add_option_function<std::string>(
           "--flight",
@@ -143,7 +146,13 @@ void add_odometry(CLI::App& evaluate) {
           "Compared with: flow (OpenCV's optical flow and PnP), rgbd (its RgbdOdometry), open3d, colmap (minutes)")
       ->type_name("LIST")
       ->delimiter(',')
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all()
       ->capture_default_str();
+  for (const char* of_flight : {"--flight", "--scene", "--frames", "--size", "--noise", "--supersampling"}) {
+    folder->excludes(of_flight);
+  }
   add_method_options(*command, trials.methods);
   command->footer(flight_help() + "\nExamples:\n  roadstereo evaluate odometry drive/\n" +
                   "  roadstereo evaluate odometry --flight loop=300 --json odometry.json");

@@ -1,92 +1,30 @@
 #include "evaluate/odometry_trials.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <optional>
 
+#include "evaluate/odometry_pairs.hpp"
 #include "evaluate/scratch_folder.hpp"
 #include "evaluation/peer_odometry.hpp"
 #include "evaluation/peer_programs.hpp"
 #include "evaluation/peer_rgbd.hpp"
 #include "finite_values.hpp"
-#include "flight/rectified_source.hpp"
-#include "flight_path.hpp"
 #include "progress.hpp"
 #include "roadstereo/error.hpp"
-#include "roadstereo/io/trajectory_file.hpp"
 #include "roadstereo/loop_search.hpp"
-#include "roadstereo/synth.hpp"
-#include "scene_options.hpp"
 #include "stopwatch.hpp"
 
 namespace roadstereo::cli {
 namespace {
 
-/// Rectified pair with the true pose of its left camera.
-struct PosedPair {
-  Frame left;
-  Frame right;
-  Pose pose{};
-};
-
-/// Pairs one after the other.
-struct PosedPairs {
-  StereoCalibration calibration;
-  std::size_t frames = 0;
-  std::function<PosedPair()> next;
-};
-
 Pose pose_of(const Eigen::Isometry3d& motion) {
   Pose pose{};
   Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(pose.data()) = motion.matrix().topRows<3>();
   return pose;
-}
-
-PosedPairs rendered_pairs(const OdometryTrialOptions& options) {
-  SceneOptions scene;
-  scene.name = options.scene;
-  scene.size = options.size;
-  synth::Scene first = make_scene(scene);
-  first.supersampling = options.supersampling;
-  first.degradation.noise_grey = options.noise_grey;
-  first.validate();
-  const synth::FlightPath path = parse_flight(options.flight);
-  for (int i = 0; i < options.frames; ++i) synth::flight_frame(first, path, i);  // throws before anything is rendered
-  PosedPairs pairs;
-  pairs.calibration = first.rig.calibration();
-  pairs.frames = static_cast<std::size_t>(options.frames);
-  pairs.next = [first, path, i = 0]() mutable {
-    const synth::Scene posed = synth::flight_frame(first, path, i++);
-    synth::SyntheticPair pair = synth::render(posed);
-    return PosedPair{std::move(pair.left), std::move(pair.right), posed.rig.camera_to_road()};
-  };
-  return pairs;
-}
-
-PosedPairs recorded_pairs(const OdometryTrialOptions& options) {
-  const std::filesystem::path folder(options.folder);
-  std::vector<Pose> poses;
-  for (const FramePose& pose : io::read_trajectory((folder / "poses.txt").string()).frames) {
-    if (pose.frame != static_cast<int>(poses.size()))
-      fail(options.folder, ": poses.txt has no pose of frame ", poses.size());
-    poses.push_back(pose.camera_to_world);
-  }
-  const std::vector<std::string> calibration =
-      options.calibration.empty() ? std::vector{(folder / "calibration.yaml").string()} : options.calibration;
-  const auto source = std::make_shared<RectifiedSource>(io::open_source({options.folder}), calibration);
-  PosedPairs pairs;
-  pairs.frames = poses.size();
-  pairs.next = [source, poses, i = std::size_t{0}]() mutable {
-    std::optional<io::SourcePair> pair = source->next();
-    if (!pair) fail("the recording has ", i, " pairs and ", poses.size(), " poses");
-    if (!pair->error.empty()) fail(pair->name, ": ", pair->error);
-    return PosedPair{std::move(pair->left), std::move(pair->right), poses[i++]};
-  };
-  if (!source->calibration()) fail(calibration.front(), ": the calibration must have the size of the images");
-  pairs.calibration = *source->calibration();
-  return pairs;
 }
 
 /// RMS displacement of pixels of the later frame, when its points are moved by the error of a link.
@@ -123,6 +61,7 @@ OdometryTrial trial_of(const std::string& method, const Track& track, const std:
   trial.method = method;
   trial.score = score_trajectory(truth, track.poses);
   trial.link_errors_px = track.errors_px;
+  std::erase_if(trial.link_errors_px, [](double error) { return std::isnan(error); });
   trial.link_errors_sd = track.errors_sd;
   trial.lost = track.lost;
   trial.median_ms = track.times_ms.empty() ? 0 : median(track.times_ms);
@@ -174,6 +113,7 @@ void add_peer(FramePeer& peer, const FrameResult& result, const std::vector<Pose
   const Eigen::Isometry3d motion = found ? isometry(*found) : Eigen::Isometry3d::Identity();
   track.lost += found ? 0 : 1;
   track.poses.push_back(pose_of(isometry(track.poses.back()) * motion.inverse()));
+  if (!found) return;
   const Eigen::Isometry3d from = isometry(truth[truth.size() - 2]), to = isometry(truth.back());
   track.errors_px.push_back(link_error_px(motion * (to.inverse() * from).inverse(), result.disparity, rig));
 }
@@ -278,6 +218,7 @@ void add_graph(const Odometry& odometry, LoopSearch& search, const std::vector<P
   trials.graph = close_loops(input, search);
   trials.compared = search.compared();
   Track track;
+  track.lost = trials.methods.front().lost;  // of the same links
   for (const FramePose& pose : trials.graph->trajectory.frames) track.poses.push_back(pose.camera_to_world);
   trials.methods.push_back(trial_of("  with loops", track, truth));
   trials.methods.back().pose_errors_sd = pose_errors_sd(trials.graph->trajectory, truth);
@@ -295,14 +236,9 @@ void summarise_offsets(const std::vector<FrameLink>& links, OdometryTrials& tria
 
 }  // namespace
 
-const std::vector<std::string>& peer_odometry_names() {
-  static const std::vector<std::string> names{"flow", "rgbd", "open3d", "colmap"};
-  return names;
-}
-
 void OdometryTrialOptions::validate() const {
   for (const std::string& peer : peers) {
-    const std::vector<std::string>& names = peer_odometry_names();
+    constexpr std::array names{"flow", "rgbd", "open3d", "colmap"};
     if (std::find(names.begin(), names.end(), peer) == names.end()) {
       fail("--peers has \"", peer, "\"; it must be a comma-separated list of flow, rgbd, open3d and colmap");
     }
@@ -312,7 +248,7 @@ void OdometryTrialOptions::validate() const {
 
 OdometryTrials run_odometry_trials(const OdometryTrialOptions& options) {
   options.validate();
-  PosedPairs pairs = options.folder.empty() ? rendered_pairs(options) : recorded_pairs(options);
+  PosedPairs pairs = posed_pairs(options);
   Pipeline pipeline(with_settings(preset(options.preset), options.methods), pairs.calibration);
   const OdometryOptions odometry_options{.threads = options.methods.threads};
   Odometry odometry(pairs.calibration, odometry_options);
@@ -327,6 +263,7 @@ OdometryTrials run_odometry_trials(const OdometryTrialOptions& options) {
   for (std::size_t i = 0; i < pairs.frames; ++i) {
     const PosedPair pair = pairs.next();
     truth.push_back(pair.pose);
+    if (pair.white_level > 0) pipeline.set_white_level(pair.white_level);
     const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
     matching_ms.push_back(result.ms.total);
     add_own(odometry, static_cast<int>(i), result, truth, pairs.calibration, own);

@@ -10,10 +10,6 @@
 
 namespace roadstereo::cli {
 
-/// What may be compared: "flow" (OpenCV's optical flow and PnP), "rgbd" (its RgbdOdometry), "open3d" and "colmap",
-/// programs of their own.
-const std::vector<std::string>& peer_odometry_names();
-
 struct OdometryTrialOptions {
   std::string folder;                    ///< recording with poses.txt; empty: a rendered flight
   std::vector<std::string> calibration;  ///< empty: calibration.yaml of the folder
@@ -24,7 +20,9 @@ struct OdometryTrialOptions {
   int supersampling = 1;  ///< rays per pixel and axis of the renderer
   double noise_grey = 2;  ///< of a rendered flight, 8-bit grey levels
   std::string preset = "default";
-  std::vector<std::string> peers{"flow", "rgbd"};  ///< names of peer_odometry_names
+  /// Compared with: "flow" (OpenCV's optical flow and PnP), "rgbd" (its RgbdOdometry), "open3d" and "colmap", programs
+  /// of their own.
+  std::vector<std::string> peers{"flow", "rgbd"};
   MethodSettings methods;
 
   /// Throws Error naming the first option out of range.

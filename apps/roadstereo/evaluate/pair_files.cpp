@@ -7,13 +7,15 @@
 
 namespace roadstereo::cli {
 
-void add_write_pairs_option(CLI::App& command, std::string& folder) {
-  command
+CLI::Option* add_write_pairs_option(CLI::App& command, std::string& folder) {
+  return command
       .add_option(
           "--write-pairs", folder,
           "Write the rendered pairs, left/FRAME.png, right/FRAME.png and calibration/FRAME.yaml, for --maps, and "
           "match nothing")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->excludes("--maps")
+      ->excludes("--json");
 }
 
 void add_pair(const std::string& frame, const StereoPair& pair, io::OutputFolder& folder) {

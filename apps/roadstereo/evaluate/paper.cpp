@@ -3,8 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <memory>
 
@@ -23,18 +25,25 @@ using Json = nlohmann::ordered_json;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct PaperArguments {
-  std::string kitti, output;
+  std::string kitti, road_masks, output;
   bool quick = false;
   MethodSettings methods;
 
   std::string file(const std::string& name) const { return (fs::path(output) / name).string(); }
+
+  /// An experiment on the frames of KITTI.
+  std::vector<std::string> on_kitti(const std::string& experiment) const {
+    std::vector<std::string> words{experiment, kitti};
+    if (!road_masks.empty()) words.insert(words.end(), {"--road-masks", road_masks});
+    return words;
+  }
 };
 
 /// Runs an experiment with --json NAME.json in the folder of the page, and returns what it has written.
 Json run_experiment(void (*add)(CLI::App&), std::vector<std::string> words, const PaperArguments& arguments) {
   const std::string file = arguments.file(words.front() + ".json");
   fmt::print("roadstereo evaluate {}\n", fmt::join(words, " "));
-  words.insert(words.end(), {"--json", file});
+  words.insert(words.end(), {"--json", file, "--threads", std::to_string(arguments.methods.threads)});
   CLI::App app;
   add(app);
   std::reverse(words.begin(), words.end());  // as CLI11 takes them
@@ -46,16 +55,17 @@ std::string command_of(const std::vector<std::string>& words) {
   return fmt::format("roadstereo evaluate {}", fmt::join(words, " "));
 }
 
+/// NaN if it is null.
+double value_of(const Json& row, const std::string& key) {
+  return row.at(key).is_number() ? row.at(key).get<double>() : nan;
+}
+
 /// A value of the first row in which `column` has that text; NaN if there is none.
 double value_where(const Json& rows, const char* column, const std::string& text, const std::string& key) {
   for (const Json& row : rows) {
-    if (row.at(column) == text && row.at(key).is_number()) return row.at(key).get<double>();
+    if (row.at(column) == text) return value_of(row, key);
   }
   return nan;
-}
-
-double published(const Json& document, const std::string& key) {
-  return value_where(document.at("published"), "method", "paper (published)", key);
 }
 
 PaperPart table_1(const Json& kitti, const std::vector<std::string>& words) {
@@ -78,23 +88,20 @@ PaperPart table_1(const Json& kitti, const std::vector<std::string>& words) {
   for (const auto& [name, key] : quantities) {
     part.table.rows.push_back({Cell(name),
                                Cell(value_where(kitti.at("published"), "method", "PSMNet (published)", key), 3),
-                               Cell(published(kitti, key), 3), Cell(mean("road", "paper", key), 3),
-                               Cell(mean("lane", "paper", key), 3), Cell(mean("lane_without_edges", "paper", key), 3),
-                               Cell(mean("road", "default", key), 3), Cell(mean("lane", "default", key), 3)});
+                               Cell(value_where(kitti.at("published"), "method", "paper (published)", key), 3),
+                               Cell(mean("road", "paper", key), 3), Cell(mean("lane", "paper", key), 3),
+                               Cell(mean("lane_without_edges", "paper", key), 3), Cell(mean("road", "default", key), 3),
+                               Cell(mean("lane", "default", key), 3)});
   }
   part.why =
       "The frames and the regions drawn by hand are unknown. Edges along the rows (stop lines, borders of shadows) "
-      "hold "
-      "most of the large errors of paper: NCC is flat along them, and rows of these pairs disagree by 0.15 to 0.29 px. "
-      "paper shifts whole pixels, which costs 0.08 px. PSMNet was not run here. The figure shows the left image with "
-      "the "
-      "road in magenta, the truth, and disparities and errors of paper and default.";
+      "hold most of the large errors of paper: NCC is flat along them, and rows of these pairs disagree by 0.15 to "
+      "0.29 px. paper shifts whole pixels, which costs 0.08 px. PSMNet was not run here. The figure: left image, road "
+      "in "
+      "magenta, truth, disparities and errors of paper and default.";
   if (kitti.contains("not_transformed") && kitti.at("not_transformed").contains("paper")) {
-    std::string frames;
-    for (const Json& frame : kitti.at("not_transformed").at("paper")) {
-      frames += (frames.empty() ? "" : ", ") + frame.get<std::string>();
-    }
-    part.why += " Not transformed by paper, whose model has no roll: " + frames + ".";
+    const auto frames = kitti.at("not_transformed").at("paper").get<std::vector<std::string>>();
+    part.why += fmt::format(" Not transformed by paper, whose model has no roll: {}.", fmt::join(frames, ", "));
   }
   return part;
 }
@@ -143,15 +150,12 @@ PaperPart roll_part(const Json& roll, const std::vector<std::string>& words) {
                         {"published mean, rad", "published"},
                         {"our mean, rad", "mean_rad"},
                         {"our maximum, rad", "max_rad"}};
-  part.table.rows.push_back(
-      {Cell("EISATS, rotated"), Cell("gradient descent"), Cell(0.012, 3), Cell(nan, 4), Cell(nan, 4)});
   for (const Json& row : roll.at("rows")) {
     const std::string maps = row.at("maps").get<std::string>();
-    const bool descent = row.at("solver") == "gradient_descent";
-    const bool matched = maps.find("match") != std::string::npos;
-    if (!descent && !matched) continue;
-    part.table.rows.push_back({Cell(maps), Cell(row.at("solver").get<std::string>()), Cell(nan, 3),
-                               Cell(row.at("mean_rad").get<double>(), 5), Cell(row.at("max_rad").get<double>(), 5)});
+    if (row.at("solver") != "gradient_descent" && maps.find("match") == std::string::npos) continue;
+    const double mean = value_of(row, "mean_rad"), published = maps.starts_with("published") ? mean : nan;
+    part.table.rows.push_back({Cell(maps), Cell(row.at("solver").get<std::string>()), Cell(published, 3),
+                               Cell(std::isnan(published) ? mean : nan, 5), Cell(value_of(row, "max_rad"), 5)});
   }
   part.why =
       "EISATS was not at hand: maps of rendered roads are rotated instead, and pairs of rendered roads matched. The "
@@ -168,13 +172,15 @@ PaperPart flatness_part(const Json& flatness, const std::vector<std::string>& wo
                         {"ours, ψ = 0", "without_roll_px"},
                         {"ours, gradient descent", "gradient_descent_px"},
                         {"ours, robust", "robust_px"}};
+  const auto published_px = [&](const Json& row, const char* key) {
+    return Cell(
+        row.at("disparities") == "truth" ? value_where(flatness.at("rows"), "frame", "published: KITTI", key) : nan, 3);
+  };
   for (const Json& row : flatness.at("rows")) {
     if (row.at("frame") != "mean") continue;
-    const bool truth = row.at("disparities") == "truth";
-    part.table.rows.push_back({Cell(row.at("disparities").get<std::string>()), Cell(truth ? 0.861 : nan, 3),
-                               Cell(truth ? 0.519 : nan, 3), Cell(row.at("without_roll_px").get<double>(), 3),
-                               Cell(row.at("gradient_descent_px").get<double>(), 3),
-                               Cell(row.at("robust_px").get<double>(), 3)});
+    part.table.rows.push_back({Cell(row.at("disparities").get<std::string>()), published_px(row, "without_roll_px"),
+                               published_px(row, "gradient_descent_px"), Cell(value_of(row, "without_roll_px"), 3),
+                               Cell(value_of(row, "gradient_descent_px"), 3), Cell(value_of(row, "robust_px"), 3)});
   }
   part.why = "Other frames and regions: masks made from the truth instead of regions drawn by hand.";
   return part;
@@ -196,13 +202,6 @@ PaperPart blur_part(const Json& blur, const std::vector<std::string>& words) {
   return part;
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw SystemError("cannot write " + path);
-}
-
 PaperPage make_page(const PaperArguments& arguments) {
   PaperPage page{
       "The paper and this program",
@@ -210,6 +209,10 @@ PaperPage make_page(const PaperArguments& arguments) {
       "(2019): the published value, ours, the command that prints it, and why they differ. paper is the preset "
       "with every constant of the paper. –: no value.",
       {}};
+  std::vector<KittiFiles> frames;
+  if (!arguments.kitti.empty()) frames = find_kitti_frames(arguments.kitti, arguments.road_masks);
+  const bool with_flatness =
+      !frames.empty() && std::all_of(frames.begin(), frames.end(), std::mem_fn(&KittiFiles::has_road));
   std::vector<std::string> words;
   const auto run = [&](void (*add)(CLI::App&)) { return run_experiment(add, words, arguments); };
   page.parts.push_back(
@@ -229,10 +232,9 @@ PaperPage make_page(const PaperArguments& arguments) {
   if (arguments.kitti.empty()) {
     page.parts.push_back({"Table 1, σ_d and figures of KITTI", "", {}, "", "Left out: no folder of KITTI was given."});
   } else {
-    words = {"kitti", arguments.kitti, "--figure", arguments.file("kitti.png")};
-    const Json kitti = run(add_kitti);
-    words.resize(2);
-    page.parts.push_back(table_1(kitti, words));
+    words = arguments.on_kitti("kitti");
+    words.insert(words.end(), {"--figure", arguments.file("kitti.png")});
+    page.parts.push_back(table_1(run(add_kitti), arguments.on_kitti("kitti")));
   }
   words = {"blur"};
   if (arguments.quick) words.insert(words.end(), {"--steps", "2", "--directions", "0"});
@@ -248,10 +250,12 @@ PaperPage make_page(const PaperArguments& arguments) {
   if (arguments.quick) words.insert(words.end(), {"--angles", "2"});
   page.parts.push_back(roll_part(run(add_roll), words));
   write_figure(arguments.file("roll.png"), draw_roll(arguments.methods));
-  if (!arguments.kitti.empty()) {
-    words = {"flatness", arguments.kitti};
+  if (with_flatness) {
+    words = arguments.on_kitti("flatness");
     page.parts.push_back(flatness_part(run(add_flatness), words));
-    write_figure(arguments.file("transformed_kitti.png"), draw_transformed_kitti(arguments.kitti, arguments.methods));
+    write_figure(arguments.file("transformed_kitti.png"), draw_transformed_kitti(frames, arguments.methods));
+  } else if (!arguments.kitti.empty()) {
+    page.parts.push_back({"σ_d of the transformed KITTI truth", "", {}, "", "Left out: a frame has no road mask."});
   }
   return page;
 }
@@ -267,7 +271,7 @@ void paper(const PaperArguments& arguments) {
 
 constexpr const char* paper_footer =
     R"(Runs the experiments of the paper, some minutes, and writes paper.html, paper.md and paper.json, the figures and the JSON
-of every experiment into the output folder.
+of every experiment into the output folder. σ_d needs the road of every frame.
 
 Example:
   roadstereo evaluate paper kitti2015 --output paper)";
@@ -282,7 +286,12 @@ void add_paper(CLI::App& evaluate) {
   command->add_option("DIR", arguments->kitti, "Folder of KITTI Stereo 2015 or 2012; absent: without what needs it");
   command->add_option("--output", arguments->output, "Folder of the page")->type_name("DIR")->required();
   command->add_flag("--quick", arguments->quick, "Fewer angles, lengths and runs");
-  command->add_option("--threads", arguments->methods.threads, "Worker threads of the figures; 0: all cores")
+  command
+      ->add_option("--road-masks", arguments->road_masks,
+                   "Folder of road masks, or polygons in JSON; default: DIR/road if present")
+      ->type_name("DIR|FILE")
+      ->needs("DIR");
+  command->add_option("--threads", arguments->methods.threads, "Worker threads; 0: all cores")
       ->type_name("N")
       ->capture_default_str();
   command->callback([arguments] { paper(*arguments); });

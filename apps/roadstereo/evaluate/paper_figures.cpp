@@ -8,7 +8,6 @@
 
 #include "core/degrees.hpp"
 #include "evaluate/error_map.hpp"
-#include "evaluate/kitti_frames.hpp"
 #include "evaluate/rendered_pair.hpp"
 #include "evaluate/roll_maps.hpp"
 #include "evaluation/picture_sheet.hpp"
@@ -81,13 +80,14 @@ Frame draw_roll(const MethodSettings& methods) {
   return io::picture_sheet(rows, cell_width);
 }
 
-Frame draw_transformed_kitti(const std::string& folder, const MethodSettings& methods) {
+Frame draw_transformed_kitti(const std::vector<KittiFiles>& frames, const MethodSettings& methods) {
   constexpr std::size_t max_rows = 4;
   constexpr int lidar_radius_px = 2;
   std::vector<std::vector<io::SheetCell>> rows;
-  for (const KittiFiles& files : find_kitti_frames(folder, "")) {
+  for (const KittiFiles& files : frames) {
+    if (rows.size() >= max_rows) break;
     LabelledFrame frame = read_kitti_frame(files);
-    if (!frame.road || rows.size() >= max_rows) continue;
+    if (!frame.road) continue;
     const Frame left = io::tint_magenta(frame.pair.left.view(), frame.pair.white_level, *frame.road);
     const io::SheetCell truth = disparity_cell(thicken(frame.truth, lidar_radius_px), "truth");
     for (int v = 0; v < frame.truth.height(); ++v) {

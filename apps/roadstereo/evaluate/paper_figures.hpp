@@ -1,8 +1,9 @@
 // Figures of the paper, drawn from our data.
 #pragma once
 
-#include <string>
+#include <vector>
 
+#include "evaluate/kitti_frames.hpp"
 #include "evaluate/methods.hpp"
 #include "roadstereo/image.hpp"
 
@@ -18,7 +19,7 @@ Frame draw_motion_blur(const MethodSettings& methods);
 Frame draw_roll(const MethodSettings& methods);
 
 /// Figure of the transformed KITTI truth: left image with the road in magenta, truth, transformed truth of the road.
-/// `folder` as in find_kitti_frames; at most four frames.
-Frame draw_transformed_kitti(const std::string& folder, const MethodSettings& methods);
+/// At most four frames.
+Frame draw_transformed_kitti(const std::vector<KittiFiles>& frames, const MethodSettings& methods);
 
 }  // namespace roadstereo::cli

@@ -28,9 +28,12 @@ void add_figure_option(CLI::App& command, std::string& path) {
   command.add_option("--figure", path, "Also draw the maps: a PNG for people")->type_name("FILE");
 }
 
-void write_report(const std::string& path, const nlohmann::ordered_json& document) {
-  const std::string text = json_text(document);
+void write_text(const std::string& path, const std::string& text) {
   write_bytes(path, text.data(), text.size());
+}
+
+void write_report(const std::string& path, const nlohmann::ordered_json& document) {
+  write_text(path, json_text(document));
 }
 
 void write_figure(const std::string& path, const Frame& picture) {

@@ -17,7 +17,10 @@ void add_json_option(CLI::App& command, std::string& path);
 /// Add --figure: the file of a picture; empty: none.
 void add_figure_option(CLI::App& command, std::string& path);
 
-/// Write the document as JSON. Throws Error if the file cannot be opened, SystemError if writing fails.
+/// Write a text. Throws Error if the file cannot be opened, SystemError if writing fails.
+void write_text(const std::string& path, const std::string& text);
+
+/// Write the document as JSON. Throws likewise.
 void write_report(const std::string& path, const nlohmann::ordered_json& document);
 
 /// Writes a picture as PNG. Throws likewise.

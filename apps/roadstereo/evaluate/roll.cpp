@@ -48,7 +48,7 @@ Table make_table(const std::vector<RollErrors>& all) {
                {"lost", "lost"},
                {"mean", "mean_rad"},
                {"max", "max_rad"}},
-              {{"published: EISATS, rotated", "gradient descent", Cell(NAN, 0), Cell(NAN, 0),
+              {{"published: EISATS, rotated", "gradient_descent", Cell(NAN, 0), Cell(NAN, 0),
                 Cell(published_mean_rad, 3), Cell(NAN, 6)}}};
   for (const RollErrors& errors : all) {
     table.rows.push_back({errors.maps, errors.solver, Cell(static_cast<double>(errors.error_rad.size()), 0),
@@ -92,6 +92,7 @@ void add_roll(CLI::App& evaluate) {
   command->add_option("--angles", arguments->trials.angles, "Number of angles per view")->capture_default_str();
   command->add_flag("--no-pairs", arguments->no_pairs, "Exact maps only, without matching");
   add_method_options(*command, arguments->trials.methods);
+  command->get_option("--no-pairs")->excludes("--set");
   command->footer("Example:\n  roadstereo evaluate roll --json roll.json");
   add_json_option(*command, arguments->json);
   command->callback([arguments] { run(*arguments); });

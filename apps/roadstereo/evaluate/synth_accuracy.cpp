@@ -113,8 +113,8 @@ void add_synth_accuracy(CLI::App& evaluate) {
   add_synth_sizes(*command, arguments->sizes);
   add_method_options(*command, arguments->methods);
   add_maps_option(*command, arguments->methods.maps);
-  add_write_pairs_option(*command, arguments->pairs_folder);
   add_json_option(*command, arguments->json);
+  add_write_pairs_option(*command, arguments->pairs_folder)->excludes("--set");
   command->callback([arguments] { synth_accuracy(*arguments); });
 }
 
