@@ -77,6 +77,16 @@ TEST_F(EvaluateScan, RejectsBadInput) {
   expect_complaint(run(""), "INPUT");
 }
 
+TEST_F(EvaluateScan, NamesPairAndMethodWithoutPoints) {
+  ASSERT_EQ(CommandTest::run("synth --scene demo --size 320x180 --output scene --quiet").exit_code, 0);
+  fs::create_directories(folder_ / "mine");
+  CommandTest::write("mine/pair.tiff", io::encode_float_tiff(Image<float>(320, 180, std::nanf(""))));
+  write("scan.ply", hollow(1, 2));
+  expect_complaint(run("scene/left.png scene/right.png --calibration scene/calibration.yaml --label "
+                       "scene/truth_labels.png --scan scan.ply --methods default --maps mine=mine"),
+                   "pair, mine: the cloud has 0 points");
+}
+
 /// The real potholes. The bounds are regression bounds, a little above what was measured.
 TEST_F(EvaluateScanRealData, PotholeMatchesLaserScan) {
   const char* data = std::getenv("ROADSTEREO_DATA");

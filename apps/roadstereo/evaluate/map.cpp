@@ -34,6 +34,7 @@ first fifth of the frames.
 double ratio(const std::vector<PassDifference>& differences) {
   double squares = 0, variances = 0;
   for (const PassDifference& difference : differences) {
+    if (difference.cells == 0) continue;
     const auto cells = static_cast<double>(difference.cells);
     squares += cells * difference.rms_m * difference.rms_m;
     variances += cells * difference.predicted_m * difference.predicted_m;
@@ -41,9 +42,9 @@ double ratio(const std::vector<PassDifference>& differences) {
   return std::sqrt(squares / variances);
 }
 
-/// Figures of the damages that at least five frames show.
+/// Figures of the damages.
 struct DamageFigures {
-  std::vector<double> fused, best;  ///< errors of the depth, metres
+  std::vector<double> fused, best;  ///< errors of the depth of those that at least five frames show, metres
   int within = 0, measured = 0;     ///< of depth, mean depth, area and volume, within two standard errors
   int once = 0, missing = 0, repeated = 0;
 
@@ -94,6 +95,7 @@ Table figure_table(const MapTrials& trials, const DamageFigures& figures, double
                 {"without a record", Cell(figures.missing, 0), ""},
                 {"with several records", Cell(figures.repeated, 0), "0"},
                 {"records without a damage", Cell(trials.false_records, 0), "0"},
+                {"frames without a road", Cell(trials.frames_without_road, 0), "0"},
                 {fmt::format("memory of {} frames: growth, MiB", arguments.memory_frames), Cell(memory_mib, 1), "0"}};
   return table;
 }

@@ -12,6 +12,7 @@
 
 #include "evaluate/estimated_poses.hpp"
 #include "evaluate/scratch_folder.hpp"
+#include "finite_values.hpp"
 #include "progress.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
@@ -94,14 +95,11 @@ PassDifference compare(const RoadMap& one, const RoadMap& other) {
 }
 
 double median_sigma(const RoadMap& map) {
-  const MapRaster raster = map.read(map.bounds());
-  std::vector<float> values;
-  const float* const first = raster.sigma.row(0);
-  std::copy_if(first, first + raster.sigma.pixels(), std::back_inserter(values),
-               [](float s) { return std::isfinite(s); });
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return median(finite_values(map.read(map.bounds()).sigma));
+}
+
+void push_finite(double value, std::vector<double>& values) {
+  if (std::isfinite(value)) values.push_back(value);
 }
 
 bool is_of(const MapDamage& found, const synth::DamageTruth& truth) {
@@ -156,14 +154,14 @@ class RoadTrial {
     trials.forward.push_back(compare(maps_[0], maps_[1]));
     trials.reverse.push_back(compare(maps_[0], maps_[2]));
     const RoadMap& all = maps_.back();
-    trials.single_sigma_m.push_back(single_sigma_m_);
+    push_finite(single_sigma_m_, trials.single_sigma_m);
     trials.loops.insert(trials.loops.end(), loops_.begin(), loops_.end());
-    trials.fused_sigma_m.push_back(median_sigma(all));
+    push_finite(median_sigma(all), trials.fused_sigma_m);
+    trials.frames_without_road += frames_without_road_;
     DamageOptions everything = damage_;
     everything.min_confidence = 0;
     const std::vector<RoadDamageRecord> records =
         join_damage(sightings_, find_map_damage(all, everything), all, damage_);
-    std::size_t matched = 0;
     for (const synth::DamageTruth& truth : truths_) {
       MapDamageTrial trial;
       trial.truth = truth;
@@ -171,11 +169,12 @@ class RoadTrial {
         if (!is_of(record.best, truth)) continue;
         if (trial.records++ == 0) trial.record = record;
       }
-      matched += static_cast<std::size_t>(trial.records);
       trial.best_frame_error_m = best_frame_error(sightings_, truth);
       trials.damages.push_back(std::move(trial));
     }
-    trials.false_records += static_cast<int>(records.size() - std::min(records.size(), matched));
+    trials.false_records += static_cast<int>(std::count_if(records.begin(), records.end(), [&](const auto& record) {
+      return std::none_of(truths_.begin(), truths_.end(), [&](const auto& truth) { return is_of(record.best, truth); });
+    }));
   }
 
  private:
@@ -184,7 +183,10 @@ class RoadTrial {
     const synth::SyntheticPair pair = synth::render(scene, options.threads);
     truths_ = pair.damages;
     const FrameResult& result = pipeline.process(pair.left.view(), pair.right.view());
-    if (!result.roll_found) return;
+    if (!result.roll_found) {
+      ++frames_without_road_;
+      return;
+    }
     const RigidTransform pose = poses_.empty()
                                     ? RigidTransform(scene.rig.camera_to_road())
                                     : poses_[static_cast<std::size_t>(pass) * static_cast<std::size_t>(options.frames) +
@@ -193,7 +195,7 @@ class RoadTrial {
                         pair.calibration, pose};
     maps_[static_cast<std::size_t>(pass)].add(seen);
     maps_.back().add(seen);
-    if (pass == 0 && frame == 0) single_sigma_m_ = median_sigma(maps_.front());
+    if (pass == 0 && std::isnan(single_sigma_m_)) single_sigma_m_ = median_sigma(maps_.front());
     for (MapDamage& found : locate_damage(pipeline.find_damage(), result.geometry.plane, pair.calibration, pose)) {
       sightings_.push_back({pass, frame, std::move(found)});
     }
@@ -207,7 +209,8 @@ class RoadTrial {
   DamageOptions damage_;
   std::vector<DamageSighting> sightings_;
   std::vector<synth::DamageTruth> truths_;
-  double single_sigma_m_ = 0;
+  int frames_without_road_ = 0;
+  double single_sigma_m_ = NAN;  ///< of the first frame that was mapped
 };
 
 double peak_memory_mib() {

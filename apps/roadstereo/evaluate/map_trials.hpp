@@ -33,7 +33,7 @@ struct PassDifference {
 struct MapDamageTrial {
   synth::DamageTruth truth;
   int records = 0;                ///< of all passes; 1 is right
-  RoadDamageRecord record;        ///< the nearest one
+  RoadDamageRecord record;        ///< the first one
   double best_frame_error_m = 0;  ///< of the depth in the frame with the smallest standard error
 };
 
@@ -42,7 +42,8 @@ struct MapTrials {
   std::vector<PassDifference> forward;  ///< second pass against the first
   std::vector<PassDifference> reverse;  ///< pass in the other direction against the first
   std::vector<MapDamageTrial> damages;
-  int false_records = 0;
+  int false_records = 0;               ///< of no true damage
+  int frames_without_road = 0;         ///< of all passes, not mapped
   std::vector<double> single_sigma_m;  ///< of each road, median standard error of a height, one frame
   std::vector<double> fused_sigma_m;   ///< and of the map of all passes
   std::vector<LoopLink> loops;         ///< with estimated poses

@@ -27,7 +27,8 @@ constexpr std::size_t final_points = 10000;
 constexpr int ranking_iterations = 20;
 constexpr int refining_iterations = 80;
 constexpr int final_iterations = 100;
-constexpr double convergence = 1e-5;  // step length, relative to the extent of the surface
+constexpr double trimmed_share = 0.8;  // nearest share of the points that ranks initial poses
+constexpr double convergence = 1e-5;   // step length, relative to the extent of the surface
 
 /// Motion with the RMS of its closest distances.
 struct Pose {
@@ -141,7 +142,7 @@ RigidMotion point_to_plane_step(const Points& cloud, const ScanModel& scan, cons
 }
 
 /// Robust point-to-plane ICP.
-Pose icp_point_to_plane(const Points& cloud, const ScanModel& scan, Pose pose, double share) {
+Pose icp_point_to_plane(const Points& cloud, const ScanModel& scan, Pose pose) {
   const PrincipalAxes axes = principal_axes(cloud);
   constexpr double min_scale_share = 1e-3;
   const double extent = axes.sigma[0];
@@ -152,7 +153,7 @@ Pose icp_point_to_plane(const Points& cloud, const ScanModel& scan, Pose pose, d
     pose.motion = next;
     if (length < convergence * extent) break;
   }
-  pose.rms = trimmed_rms(find_correspondences(cloud, scan.voxels, pose.motion), share);
+  pose.rms = trimmed_rms(find_correspondences(cloud, scan.voxels, pose.motion), trimmed_share);
   return pose;
 }
 
@@ -182,13 +183,13 @@ bool is_distinct(const RigidMotion& one, const RigidMotion& other, const Princip
 }
 
 /// Initial poses after a coarse ICP, by ascending RMS.
-std::vector<Pose> ranked_poses(const Points& cloud, const ScanModel& scan, const RegistrationOptions& options) {
+std::vector<Pose> ranked_poses(const Points& cloud, const ScanModel& scan) {
   constexpr double coarse_voxel = 0.12;  // side, in standard deviations along the longest axis
   const ScanSurface coarse(voxel_downsample(scan.scan.points(), coarse_voxel * scan.axes.sigma[0]));
   const Points few = subsample_evenly(cloud, ranking_points);
   std::vector<Pose> poses;
   for (const RigidMotion& motion : initial_motions(few, scan.axes)) {
-    poses.push_back(icp_point_to_point(few, coarse, {motion}, options.trimmed_share, ranking_iterations));
+    poses.push_back(icp_point_to_point(few, coarse, {motion}, trimmed_share, ranking_iterations));
   }
   std::stable_sort(poses.begin(), poses.end(), [](const Pose& a, const Pose& b) { return a.rms < b.rms; });
   return poses;
@@ -206,36 +207,28 @@ std::vector<Pose> distinct_poses(const std::vector<Pose>& ranked, const Principa
 }
 
 /// Refine a pose by robust ICP and, with LastStep::least_squares, by point-to-point ICP against `surface`.
-Pose refine(const Points& cloud, const ScanModel& scan, const ScanSurface& surface, const Pose& start,
-            const RegistrationOptions& options) {
-  Pose robust = icp_point_to_plane(cloud, scan, start, options.trimmed_share);
-  if (options.last_step == LastStep::robust) return robust;
+Pose refine(const Points& cloud, const ScanModel& scan, const ScanSurface& surface, const Pose& start, LastStep last) {
+  Pose robust = icp_point_to_plane(cloud, scan, start);
+  if (last == LastStep::robust) return robust;
   return icp_point_to_point(cloud, surface, robust, 1, final_iterations);
 }
 
 }  // namespace
 
-void RegistrationOptions::validate() const {
-  constexpr double min_share = 0.3;
-  if (trimmed_share >= min_share && trimmed_share <= 1) return;
-  fail("trimmed_share is ", trimmed_share, "; it must be between ", min_share, " and 1");
-}
-
-Registration register_cloud(const Points& cloud, const ScanModel& scan, const RegistrationOptions& options) {
-  options.validate();
+Registration register_cloud(const Points& cloud, const ScanModel& scan, LastStep last) {
   constexpr std::size_t min_points = 100;
   if (cloud.size() < min_points) fail("the cloud has ", cloud.size(), " points; it must have at least ", min_points);
   const PrincipalAxes cloud_axes = principal_axes(cloud);
   const Points some = subsample_evenly(cloud, refining_points);
-  std::vector<Pose> poses = distinct_poses(ranked_poses(cloud, scan, options), cloud_axes, refined_pose_count);
-  for (Pose& pose : poses) pose = refine(some, scan, scan.voxels, pose, options);
+  std::vector<Pose> poses = distinct_poses(ranked_poses(cloud, scan), cloud_axes, refined_pose_count);
+  for (Pose& pose : poses) pose = refine(some, scan, scan.voxels, pose, last);
   std::stable_sort(poses.begin(), poses.end(), [](const Pose& a, const Pose& b) { return a.rms < b.rms; });
   const Points many = subsample_evenly(cloud, final_points);
-  const Pose best = refine(many, scan, scan.scan, poses.front(), options);
+  const Pose best = refine(many, scan, scan.scan, poses.front(), last);
   Registration result{best.motion, best.rms, std::numeric_limits<double>::infinity()};
   for (const Pose& pose : poses) {
     if (!is_distinct(pose.motion, best.motion, cloud_axes)) continue;
-    const Pose next = refine(many, scan, scan.scan, pose, options);
+    const Pose next = refine(many, scan, scan.scan, pose, last);
     if (!is_distinct(next.motion, best.motion, cloud_axes)) continue;
     result.next_rms = next.rms;
     break;

@@ -21,18 +21,10 @@ enum class LastStep {
   least_squares  ///< robust, then point-to-point ICP of all points, which minimises the published measure
 };
 
-struct RegistrationOptions {
-  double trimmed_share = 0.8;  ///< nearest share of the points that ranks initial poses, 0.3 … 1
-  LastStep last_step = LastStep::robust;
-
-  /// Throws Error if trimmed_share is out of range.
-  void validate() const;
-};
-
 /// Result of a registration.
 struct Registration {
   RigidMotion motion;   ///< from the cloud to the surface
-  double rms = 0;       ///< of the closest distances: of the nearest `trimmed_share` of the points, or of all of them
+  double rms = 0;       ///< of the closest distances: of the nearest 80 % of the points, or of all of them
                         ///< after least squares
   double next_rms = 0;  ///< the same for the best pose that differs by more than 10° or a tenth of the extent; infinity
                         ///< if all initial poses converge to one
@@ -41,6 +33,6 @@ struct Registration {
 /// Global registration of a cloud to a scan: trimmed ICP (iterative closest points) from 72 initial poses, which align
 /// the principal axes, then robust point-to-plane ICP of the best. Both must show about the same part of the surface.
 /// Deterministic. Throws Error for fewer than 100 points in the cloud.
-Registration register_cloud(const Points& cloud, const ScanModel& scan, const RegistrationOptions& options = {});
+Registration register_cloud(const Points& cloud, const ScanModel& scan, LastStep last = LastStep::robust);
 
 }  // namespace roadstereo::cli

@@ -30,15 +30,10 @@ struct ScanArguments {
   std::vector<std::string> compared{"default", "SGBM"};
   int disparities = 352;
   bool robust = false;
+  LastStep last_step() const { return robust ? LastStep::robust : LastStep::least_squares; }
   MethodSettings methods;
   std::string json, figure;
 };
-
-RegistrationOptions registration_options(const ScanArguments& arguments) {
-  RegistrationOptions options;
-  options.last_step = arguments.robust ? LastStep::robust : LastStep::least_squares;
-  return options;
-}
 
 /// Row of the table: score of one method on one pothole.
 struct Row {
@@ -135,7 +130,7 @@ void scan_cloud(const ScanArguments& arguments) {
   const Points cloud = read_points(arguments.inputs[0], arguments.cloud_unit_mm);
   const ScanModel scan(read_points(arguments.inputs[1], arguments.scan_unit_mm));
   check_extents(arguments.inputs[0], cloud, scan.axes);
-  const Registration registration = register_cloud(cloud, scan, registration_options(arguments));
+  const Registration registration = register_cloud(cloud, scan, arguments.last_step());
   const std::vector<ScanDistance> distances = closest_distances(cloud, scan, registration.motion);
   const std::size_t labelled = arguments.labelled == 0 ? cloud.size() : arguments.labelled;
   print({{"cloud", "cloud", score_distances(distances, labelled), registration}}, arguments);
@@ -154,7 +149,7 @@ void scan_pair(const ScanFiles& files, const ScanArguments& arguments, std::vect
     try {
       const Image<float> map = run_method(method, {pair, arguments.disparities, true, files.name}, arguments.methods);
       const LabelledPoints found = labelled_points(map, label, *pair.calibration);
-      const Registration registration = register_cloud(found.points, scan, registration_options(arguments));
+      const Registration registration = register_cloud(found.points, scan, arguments.last_step());
       const std::vector<ScanDistance> distances = closest_distances(found.points, scan, registration.motion);
       rows.push_back({files.name, method, score_distances(distances, found.labelled), registration});
       if (pictures != nullptr)
@@ -190,8 +185,18 @@ void scan_pairs(const std::vector<ScanFiles>& frames, ScanArguments arguments) {
   if (drawn) write_figure(arguments.figure, io::picture_sheet(sheet, cell_width));
 }
 
-void scan(const ScanArguments& arguments) {
+/// Throws Error if one of the options is given, which are not of these inputs.
+void refuse(const CLI::App& command, const std::vector<const char*>& options, const char* inputs) {
+  for (const char* option : options) {
+    if (command.count(option) > 0) fail(option, " is not of ", inputs, "; it must not be given with it");
+  }
+}
+
+void scan(const CLI::App& command, const ScanArguments& arguments) {
   const bool is_pair = !arguments.label.empty() || !arguments.scan.empty() || !arguments.calibration.empty();
+  if (arguments.inputs.size() == 1 || is_pair) {
+    refuse(command, {"--labelled", "--cloud-unit-mm"}, arguments.inputs.size() == 1 ? "DIR" : "LEFT RIGHT");
+  }
   if (arguments.inputs.size() == 1) {
     if (is_pair)
       fail("--calibration, --label and --scan are given with one input; they must be given with a pair LEFT RIGHT");
@@ -204,6 +209,7 @@ void scan(const ScanArguments& arguments) {
         {{"pair", {arguments.inputs[0], arguments.inputs[1], arguments.calibration}, arguments.label, arguments.scan}},
         arguments);
   } else {
+    refuse(command, {"--methods", "--maps", "--disparities", "--set", "--threads"}, "CLOUD SCAN");
     scan_cloud(arguments);
   }
 }
@@ -211,7 +217,7 @@ void scan(const ScanArguments& arguments) {
 constexpr const char* scan_footer =
     R"(One of
   DIR          left/pM_NN.png, right/, label/ (mask of the pothole), scan/pM_*.ply, calibration_pM*.yaml
-  LEFT RIGHT   one pair, with --calibration, --label and --scan
+  LEFT RIGHT   one pair, with --calibration, --label and --scan; its map in DIR of --maps is pair.png
   CLOUD SCAN   the points of a pothole (PLY, metres) and its scan (PLY, millimetres)
 The cloud is registered to the scan by a rigid motion without reflection: robust iterative closest points (ICP) from many
 initial poses, then least squares, as for published accuracies (not with --robust).
@@ -262,7 +268,7 @@ void add_scan(CLI::App& evaluate) {
   add_maps_option(*command, arguments->methods.maps);
   add_json_option(*command, arguments->json);
   add_figure_option(*command, arguments->figure);
-  command->callback([arguments] { scan(*arguments); });
+  command->callback([arguments, command] { scan(*command, *arguments); });
 }
 
 }  // namespace roadstereo::cli
