@@ -134,7 +134,7 @@ def synth_damage(result):
 def robustness(result):
     table = [[row["source"], number(row["frame_count"], 0), number(row["found_percent"], 1), number(row["weak_percent"], 1),
               number(row["plane_px"], 2), row["worst_frame"]] for row in result["roads"]]
-    return markdown(["source", "frames", "found %", "of these weak %", "plane px", "worst frame"], table)
+    return markdown(["source", "frames", "found %", "weak %", "plane px", "worst frame"], table)
 
 
 @needs("robustness")

@@ -3,7 +3,8 @@
 
 Usage: roadstereo evaluate EXPERIMENT ... --json values.json
        scripts/plot_evaluate.py EXPERIMENT values.json figure.png
-EXPERIMENT is ablation, blur, flatness, flight, kitti, lambda, roll, runtime, sigma or synth. Needs matplotlib.
+EXPERIMENT is ablation, blur, flatness, flight, kitti, lambda, roll, runtime, sigma, subpixel or
+synth. Needs matplotlib.
 """
 import json
 import math

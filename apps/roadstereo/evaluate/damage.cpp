@@ -30,10 +30,9 @@ struct DamageArguments {
 };
 
 constexpr const char* label_note =
-    "labels: connected components of the label from 50 pixels; found: those that depressions cover by at least a "
-    "third; "
-    "false\n"
-    "positives: depressions of which less than a third is labelled; measured: labelled pixels with a disparity.\n";
+    "labels: connected components of the label of 50 pixels or more; found: those that depressions cover by at least\n"
+    "a third; false positives: depressions of which less than a third is labelled; measured: labelled pixels with a\n"
+    "disparity.\n";
 
 constexpr const char* road_note =
     "IoU, precision and recall over the pixels with a true disparity. The road is intact, so that all damage is "

@@ -7,8 +7,9 @@ namespace roadstereo::cli {
 namespace {
 
 constexpr const char* evaluate_footer =
-    R"(Every experiment prints a table, with the published values where the paper has some. --json writes the same values to
-a file, which scripts/plot_evaluate.py draws.
+    R"(Every experiment but paper, which writes a page, prints a table, with the published values where the paper has some.
+--json writes the same values to a file; scripts/plot_evaluate.py draws those of ablation, blur, flatness, flight,
+kitti, lambda, roll, runtime, sigma, subpixel and synth.
 
 Example:
   roadstereo evaluate score disparity.tiff truth.png --tolerances 1,2,3 --figure error.png)";

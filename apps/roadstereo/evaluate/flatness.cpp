@@ -83,7 +83,7 @@ void add_flatness(CLI::App& evaluate) {
   CLI::App* command =
       evaluate.add_subcommand("flatness", "σ_d of the transformed road with and without roll, on KITTI frames");
   const auto arguments = std::make_shared<FlatnessArguments>();
-  command->add_option("DIR", arguments->data, "Folder with image_2, image_3 and disp_noc_0")->required();
+  command->add_option("DIR", arguments->data, "Folder of KITTI Stereo 2015 or 2012")->required();
   command
       ->add_option("--road-masks", arguments->road_masks,
                    "Folder of road masks, named like the frames, or polygons in JSON; default: DIR/road")

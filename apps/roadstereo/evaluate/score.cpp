@@ -46,7 +46,7 @@ void score(const ScoreArguments& arguments) {
     write_figure(arguments.figure,
                  io::colour_map(absolute_error(map, truth, inside), {0, highest, false, "absolute error, px"}));
   }
-  fmt::print("{}", table.text());
+  fmt::print("{}{}", table.text(), score_legend());
 }
 
 constexpr const char* score_footer =
