@@ -44,10 +44,11 @@ const char* name_of(RoadStatus status);
 struct RoadModelEstimate {
   DisparityPlane model;
   RoadStatus status = RoadStatus::none;
-  std::string reason;           ///< why there is no road, or what speaks against it; else empty
-  double evidence = 0;          ///< evidence for the plane per pixel of the part of the image where it would be
-                                ///< visible, taken as at least half of the image; about 0 … 2; 0 when tracked
-  double inlier_share = 0;      ///< share of the textured samples below the horizon that the plane explains, 0 … 1
+  std::string reason;              ///< why there is no road, or what speaks against it; else empty
+  double evidence = 0;             ///< evidence for the plane per pixel of the part of the image where it would be
+                                   ///< visible, taken as at least half of the image; about 0 … 2; 0 when tracked
+  double inlier_share = 0;         ///< share of the textured samples below the horizon that the plane explains, 0 … 1
+  bool samples_are_cells = false;  ///< whether these samples are cells of blocks, as in noise, and not single blocks
   double correlation = 0;       ///< 10th percentile of the NCC of blocks on the road at full size, 0 … 1; 0: unknown
   int matches = 0;              ///< reliable correspondences found over the whole image
   int inliers = 0;              ///< correspondences on the road
@@ -74,8 +75,9 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
 /// The last frame's road, where tracking starts.
 struct TrackedRoad {
   DisparityPlane model;
-  double inlier_share = 0;  ///< RoadModelEstimate::inlier_share, 0 … 1
-  double correlation = 0;   ///< RoadModelEstimate::correlation; unchanged if the last pair gave none
+  double inlier_share = 0;         ///< RoadModelEstimate::inlier_share, 0 … 1
+  double correlation = 0;          ///< RoadModelEstimate::correlation; unchanged if the last pair gave none
+  bool samples_are_cells = false;  ///< RoadModelEstimate::samples_are_cells
 };
 
 /// Tracks the last frame's road: searches around `previous` and refits. The status is `none` when the road explains far

@@ -73,7 +73,8 @@ void Pipeline::State::end_frame() {
   if (options.check_rows) ++carried.frames_since_rows;
   carried.road.reset();
   if (result.road.has_road()) {
-    carried.road = TrackedRoad{result.road.model, result.road.inlier_share, result.road.correlation};
+    carried.road = TrackedRoad{result.road.model, result.road.inlier_share, result.road.correlation,
+                               result.road.samples_are_cells};
   }
   carried.roll_rad = result.roll_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
   result.mde_per_s = static_cast<double>(width) * height * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;

@@ -13,14 +13,12 @@
 namespace roadstereo {
 namespace {
 
-constexpr float beyond_weight = 3.0f;       ///< of evidence below the plane, against support along it
-constexpr float beyond_margin = 1.5f;       ///< pixels of the downsampled image that the road may be uneven
-constexpr float full_weight_share = 0.15f;  ///< of the largest disparity, from where a cell counts in full: the far
-                                            ///< road is a small patch that any surface there supports
-constexpr double base_row_weight = 0.2;     ///< of the uppermost row; the lowest has this and 1
-constexpr double slope_step = 2.0;          ///< pixels of disparity at the left and right border
-constexpr double least_share = 0.5;         ///< of the picture that a plane's evidence is divided by: what is seen in
-                                            ///< a few rows only is no road
+constexpr float beyond_weight = 3.0f;    ///< of evidence below the plane, against support along it
+constexpr float beyond_margin = 1.5f;    ///< pixels of the downsampled image that the road may be uneven
+constexpr double base_row_weight = 0.2;  ///< of the uppermost row; the lowest has this and 1
+constexpr double slope_step = 2.0;       ///< pixels of disparity at the left and right border
+constexpr double least_share = 0.5;      ///< of the picture that a plane's evidence is divided by: what is seen in
+                                         ///< a few rows only is no road
 constexpr int bottom_steps = 40, top_steps = 56;
 constexpr int row_step = 2;          ///< every second row of cells is enough to find a line
 constexpr double lowest_top = -0.6;  ///< disparity of the uppermost row, as a share of the largest

@@ -7,6 +7,10 @@
 
 namespace roadstereo {
 
+/// Share of the largest disparity from which a cell counts in full as evidence: the far road is a small patch that any
+/// surface there supports.
+inline constexpr float full_weight_share = 0.15f;
+
 /// A plane and the evidence of the whole image for it.
 struct PlaneHypothesis {
   DisparityPlane plane;  ///< in full-size pixels

@@ -92,6 +92,7 @@ std::string assess_plane_fit(const PlaneFitStatistics& fit, const TiltLimit& lim
   estimate.model = fit.plane;
   estimate.inliers = fit.inliers;
   estimate.inlier_share = inlier_share(fit);
+  estimate.samples_are_cells = fit.by_cells;
   estimate.residual_px = fit.scale_px;
   if (!fit.found) return format_message("only ", fit.points, " correspondences lie near the supposed road");
   if (fit.rows_covered < min_rows_covered) {
@@ -124,7 +125,9 @@ RoadModelEstimate assess_tracked_road(const PlaneFitStatistics& around, const Pl
   estimate.correlation = close.correlation > 0 ? close.correlation : previous.correlation;
   const TiltLimit limit(width, height, calibration, options.max_road_tilt_deg);
   estimate.reason = assess_plane_fit(around.found ? close : around, limit, estimate);
-  const double least = std::max(min_share, min_share_of_last * previous.inlier_share);
+  // In noise a plane explains far more of the cells than of the blocks: these need not explain as much.
+  const bool are_fewer = previous.samples_are_cells && !estimate.samples_are_cells;
+  const double least = std::max(min_share, are_fewer ? 0 : min_share_of_last * previous.inlier_share);
   const double at_infinity = calibration ? -calibration->disparity_offset_px : 0;
   const double moved = max_move(estimate.model, previous.model, at_infinity, width, height);
   if (!estimate.reason.empty()) return estimate;

@@ -23,12 +23,12 @@ class TiltLimit {
   /// below the camera, h, and in proportion where less than three tenths of the rows lie below its horizon.
   double no_bonnet_weight(const DisparityPlane& plane) const;
 
+  /// Share of the rows below the horizon, in the middle column.
+  double share_below_horizon(const DisparityPlane& plane) const;
+
  private:
   /// Of the normal of the road, in units in which a2 is its part along the columns: baseline over height.
   double normal_length(const DisparityPlane& plane) const;
-
-  /// Share of the rows below the horizon, in the middle column.
-  double share_below_horizon(const DisparityPlane& plane) const;
 
   double focal_, cx_, cy_, offset_, max_sine_, height_;
 };
@@ -44,6 +44,7 @@ struct PlaneFitStatistics {
   int points = 0;       ///< correspondences
   int tried = 0;        ///< textured places of the road that both views see
   int inliers = 0;
+  bool by_cells = false;   ///< whether places are cells of blocks, and not single blocks
   double correlation = 0;  ///< of blocks on the plane, 10th percentile; 0 when unknown
   bool found = false;
   double rows_covered = 0;  ///< share of the image height between the 5th and the 95th percentile of the inliers' rows

@@ -120,6 +120,7 @@ Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, PlaneM
   Refinement result;
   PlaneFitStatistics& evidence = result.evidence;
   evidence.tried = found.tried;
+  evidence.by_cells = match == match_cells_along_plane;
   if (found.correlations.size() >= static_cast<std::size_t>(min_matches)) {
     evidence.correlation = full_size_correlation(lower_quantile(found.correlations, correlation_p10), factor);
   }
@@ -261,6 +262,76 @@ bool look_swapped(ImageView<const std::int16_t> left, ImageView<const std::int16
   return swapped.size() > std::max<std::size_t>(3 * matches, min_matches);
 }
 
+/// Disparities that the coarse search covers, and the factor by which it downsamples the pair.
+struct CoarseRange {
+  int factor;
+  double max_disparity_px;
+};
+
+/// The range of what was matched, if none of it counts in full as evidence: a cell does from a share of the range on,
+/// since the far road is a small patch. Below a camera that looks down from a height all is far, and may be less than a
+/// pixel of the downsampled image.
+std::optional<CoarseRange> range_of_matches(const RoadModelEstimate& estimate, const CoarseRange& searched) {
+  constexpr double reserve = 1.5;
+  constexpr int min_disparities = 8;
+  CoarseRange range{searched.factor, reserve * estimate.max_disparity_px};
+  const bool all_far = estimate.max_disparity_px < full_weight_share * searched.max_disparity_px;
+  if (estimate.matches < min_matches || !all_far) return {};
+  while (range.factor > 1 && range.max_disparity_px < min_disparities * range.factor) range.factor /= 2;
+  range.max_disparity_px = std::max<double>(range.max_disparity_px, min_disparities * range.factor);
+  return range;
+}
+
+/// The search of a road in a pair.
+struct RoadSearch {
+  ImageView<const std::int16_t> left, right;
+  ImageView<const std::uint8_t> mask;
+  const std::optional<StereoCalibration>& calibration;
+  const RoadModelOptions& options;
+  int threads;
+  const std::optional<DisparityPlane>& last;
+
+  RoadModelEstimate in_range(const CoarseRange& range) const {
+    const CoarseMatches coarse = match_coarsely(left, right, range.factor, range.max_disparity_px, threads, mask);
+    const ScratchVector<DisparityPoint>& matches = coarse.points;
+    if (look_swapped(left, right, range.factor, range.max_disparity_px, matches.size(), threads, mask)) {
+      fail("left and right look swapped: the matches lie at negative disparities");
+    }
+    RoadModelEstimate estimate;
+    estimate.matches = static_cast<int>(matches.size());
+    const bool few_match = estimate.matches < min_matches;
+    if (!few_match) {
+      auto disparities = scratch_vector<double>();
+      disparities.reserve(matches.size());
+      for (const DisparityPoint& p : matches) disparities.push_back(p.d);
+      estimate.max_disparity_px = lower_quantile(disparities, 0.99);
+    }
+    const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
+    // The plane with the most evidence; the next where that is no road after all.
+    constexpr int max_planes = 3;
+    const PlaneEvidence evidence(coarse);
+    const RigPrior rig(options, calibration);
+    const double at_infinity = calibration ? -calibration->disparity_offset_px : 0;
+    const auto prior = [&](const DisparityPlane& plane) {
+      return rig.weight(plane) * (last ? weight_near(plane, *last, at_infinity, left.width(), left.height()) : 1);
+    };
+    const PlaneSearchResult planes = search_planes(evidence, limit, prior, road_max_slope, max_planes, threads);
+    if (planes.roads.empty()) {
+      estimate.reason = few_match ? too_few(estimate.matches) : "no plane has more evidence for it than against it";
+      return estimate;
+    }
+    FinePairs pairs(left, right, mask, range.factor);
+    RoadModelEstimate found = assess_planes(pairs, planes.roads, evidence, limit, options, threads, estimate);
+    if (few_match && !found.has_road()) found.reason = too_few(estimate.matches);
+    const bool expected = (rig || last) && prior(found.model) >= 0.5;
+    if (found.has_road() && !expected) {
+      doubt_road(planes.wall_evidence, ceiling_evidence(coarse, limit, threads), found);
+    }
+    measure_range(matches, found);
+    return found;
+  }
+};
+
 }  // namespace
 
 const char* name_of(RoadStatus status) {
@@ -294,47 +365,19 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   require_one_size({left.width(), left.height()}, {right.width(), right.height()});
   require_mask_size({mask.width(), mask.height()}, {left.width(), left.height()});
   options.validate();
-  const int factor = coarse_factor(left.width(), left.height());
-  const double max_disparity = options.max_disparity_share * left.width();
   const PictureMask picture(left, mask);
-  const CoarseMatches coarse = match_coarsely(left, right, factor, max_disparity, threads, picture.view());
-  const ScratchVector<DisparityPoint>& matches = coarse.points;
-  if (look_swapped(left, right, factor, max_disparity, matches.size(), threads, picture.view())) {
-    fail("left and right look swapped: the matches lie at negative disparities");
-  }
-  RoadModelEstimate estimate;
-  estimate.matches = static_cast<int>(matches.size());
-  const bool few_match = estimate.matches < min_matches;
-  if (!few_match) {
-    auto disparities = scratch_vector<double>();
-    disparities.reserve(matches.size());
-    for (const DisparityPoint& p : matches) disparities.push_back(p.d);
-    estimate.max_disparity_px = lower_quantile(disparities, 0.99);
-  }
-
+  const RoadSearch search{left, right, picture.view(), calibration, options, threads, last};
+  const CoarseRange whole{coarse_factor(left.width(), left.height()), options.max_disparity_share * left.width()};
+  RoadModelEstimate found = search.in_range(whole);
+  if (found.status == RoadStatus::found) return found;
+  const std::optional<CoarseRange> seen = range_of_matches(found, whole);
+  if (!seen) return found;
+  const RoadModelEstimate again = search.in_range(*seen);
+  // Most of what the camera shows is road then, as from a drone; in what is far a plane through some of it is none.
+  constexpr double majority = 0.5;
   const TiltLimit limit(left.width(), left.height(), calibration, options.max_road_tilt_deg);
-  // The plane with the most evidence; the next where that is no road after all.
-  constexpr int max_planes = 3;
-  const PlaneEvidence evidence(coarse);
-  const RigPrior rig(options, calibration);
-  const double at_infinity = calibration ? -calibration->disparity_offset_px : 0;
-  const auto prior = [&](const DisparityPlane& plane) {
-    return rig.weight(plane) * (last ? weight_near(plane, *last, at_infinity, left.width(), left.height()) : 1);
-  };
-  const PlaneSearchResult planes = search_planes(evidence, limit, prior, road_max_slope, max_planes, threads);
-  if (planes.roads.empty()) {
-    estimate.reason = few_match ? too_few(estimate.matches) : "no plane has more evidence for it than against it";
-    return estimate;
-  }
-  FinePairs pairs(left, right, picture.view(), factor);
-  RoadModelEstimate found = assess_planes(pairs, planes.roads, evidence, limit, options, threads, estimate);
-  if (few_match && !found.has_road()) found.reason = too_few(estimate.matches);
-  const bool expected = (rig || last) && prior(found.model) >= 0.5;
-  if (found.has_road() && !expected) {
-    doubt_road(planes.wall_evidence, ceiling_evidence(coarse, limit, threads), found);
-  }
-  measure_range(matches, found);
-  return found;
+  const bool is_below = limit.share_below_horizon(again.model) == 1 && again.inlier_share > majority;
+  return again.status > found.status && is_below ? again : found;
 }
 
 RoadModelEstimate verify_road_model(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right,

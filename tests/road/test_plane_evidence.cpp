@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -307,6 +308,7 @@ TEST(TrackedRoad, IsFoundAgainInNoiseThatHidesBlocks) {
       verify_road_model_in_noise(pair.reference, pair.target, last, std::nullopt, RoadModelOptions{});
   ASSERT_EQ(tracked.status, RoadStatus::tracked) << tracked.reason;
   EXPECT_LT(max_difference(tracked.model, road, 0, width - 1, 0, height - 1), 0.5);
+  EXPECT_TRUE(tracked.samples_are_cells);
   // Farther than the search can see the road has jumped.
   const TrackedRoad far{{20, 0.05, -0.003}, 0.3};
   EXPECT_EQ(verify_road_model_in_noise(pair.reference, pair.target, far, std::nullopt, RoadModelOptions{}).status,
@@ -434,6 +436,30 @@ TEST(TrackedRoad, IsFoundAgainWhereItIsThirdOfPicture) {
   const RoadModelEstimate lost =
       verify_road_model(now.reference, now.target, {found.model, 1.0}, std::nullopt, RoadModelOptions{});
   EXPECT_EQ(lost.status, RoadStatus::none);
+}
+
+TEST(TrackedRoad, ShareOfCellsAsksNothingOfBlocks) {
+  const auto pair = test::textured_pair(400, 240, [](double u, double v) {
+    const double road = 0.2 * (v - 90);
+    return u > 130 && u < 290 ? std::max(road, 0.5) : std::max(24.0, road + 8);
+  });
+  TrackedRoad last{{-18, 0.2, 0}, 1.0};
+  EXPECT_EQ(verify_road_model(pair.reference, pair.target, last, std::nullopt, RoadModelOptions{}).status,
+            RoadStatus::none);
+  last.samples_are_cells = true;
+  EXPECT_EQ(verify_road_model(pair.reference, pair.target, last, std::nullopt, RoadModelOptions{}).status,
+            RoadStatus::tracked);
+}
+
+TEST(PlaneEvidence, FindsRoadFarBelowDrone) {
+  // Of 10 and 20 m, 700 px and 1400 px, 0.12 m: about a pixel of the downsampled image at the first search.
+  for (const auto& [width, height, disparity] : {std::tuple{1280, 720, 8.4}, {1920, 1080, 8.4}, {1280, 720, 4.2}}) {
+    const auto road = [d = disparity](double u, double v) { return d + 0.0004 * u + 0.0002 * v; };
+    const auto pair = test::textured_pair(width, height, road);
+    const RoadModelEstimate found = estimate_road_model(pair.reference, pair.target, std::nullopt, RoadModelOptions{});
+    ASSERT_EQ(found.status, RoadStatus::found) << width << ", " << disparity << ": " << found.reason;
+    EXPECT_LT(max_difference(found.model, road, 0, width - 1, 0, height - 1), 0.1) << width << ", " << disparity;
+  }
 }
 
 }  // namespace

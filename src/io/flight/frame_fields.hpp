@@ -24,6 +24,7 @@ void each_field(TrackedRoad& road, Visit& visit) {
   visit("model", road.model);
   visit("inlier_share", road.inlier_share);
   visit("correlation", road.correlation);
+  visit("samples_are_cells", road.samples_are_cells);
 }
 
 template <class Visit>
