@@ -16,6 +16,7 @@
 #include "road/block_alignment.hpp"
 #include "road/masked_blocks.hpp"
 #include "road/plane_fit.hpp"
+#include "road/road_search.hpp"
 #include "road/row_offset_fit.hpp"
 #include "road/strip_correlation.hpp"
 
@@ -29,7 +30,7 @@ constexpr float min_deviation = 2.0f * grey_scale;
 constexpr int cells_across = 15;
 constexpr int cells_down = 9;
 
-/// A pair at its full size and small.
+/// A pair, downsampled if it is large: beyond that size blocks of a few pixels show nothing but blur; and small.
 struct Pyramid {
   ImageView<const std::int16_t> left, right;
   int factor;
@@ -203,6 +204,7 @@ int alignment_factor(int width) {
 /// The image downsampled, in `pixels`.
 ImageView<const std::int16_t> downsampled(ImageView<const std::int16_t> image, int factor,
                                           ScratchVector<std::int16_t>& pixels) {
+  if (factor == 1) return image;
   const int width = image.width() / factor, height = image.height() / factor;
   pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   const ImageView<std::int16_t> small(pixels.data(), width, height, width);
@@ -215,14 +217,15 @@ ScratchVector<RowSample> match_cells(ImageView<const std::int16_t> left, ImageVi
   require_one_size({left.width(), left.height()}, {right.width(), right.height()});
   require_mask_size({mask.width(), mask.height()}, {left.width(), left.height()});
   const PictureMask picture(left, mask);
-  const int factor = alignment_factor(left.width());
+  const int fine = fine_factor(left.width()), factor = alignment_factor(left.width() / fine);
+  auto fine_left = scratch_vector<std::int16_t>(), fine_right = scratch_vector<std::int16_t>();
   auto left_pixels = scratch_vector<std::int16_t>(), right_pixels = scratch_vector<std::int16_t>();
-  const Pyramid pair{left,
-                     right,
+  const Pyramid pair{downsampled(left, fine, fine_left),
+                     downsampled(right, fine, fine_right),
                      factor,
-                     downsampled(left, factor, left_pixels),
-                     downsampled(right, factor, right_pixels),
-                     {picture.view(), factor}};
+                     downsampled(left, fine * factor, left_pixels),
+                     downsampled(right, fine * factor, right_pixels),
+                     {picture.view(), fine * factor}};
   std::array<CellRow, cells_down> rows;
   parallel_for(cells_down, threads,
                [&](int cell_v, int) { rows[static_cast<std::size_t>(cell_v)] = measure_cells(pair, cell_v); });
@@ -230,6 +233,10 @@ ScratchVector<RowSample> match_cells(ImageView<const std::int16_t> left, ImageVi
   samples.reserve(std::size_t{cells_across} * cells_down);
   for (const CellRow& row : rows) {
     samples.insert(samples.end(), row.samples.begin(), row.samples.begin() + static_cast<std::ptrdiff_t>(row.count));
+  }
+  for (RowSample& sample : samples) {
+    sample = {to_full_resolution(sample.u, fine), to_full_resolution(sample.v, fine), sample.du * fine,
+              sample.dv * fine};
   }
   return samples;
 }

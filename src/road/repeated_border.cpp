@@ -149,6 +149,7 @@ int mirrored_lines(const Lines& lines) {
 }
 
 int repeated_lines(const Lines& lines) {
+  if (lines.most() < min_lines) return 0;
   return std::max(replicated_lines(lines), mirrored_lines(lines));
 }
 
