@@ -7,8 +7,9 @@ namespace roadstereo {
 /// matching) along the rows, and the road plane as prior where texture is weak. It yields a disparity range per tile
 /// and the disparity prior of matching.
 struct CoarseSearchOptions {
-  int factor = 0;                ///< downsampling, 2, 4 or 8; 0: the smallest that leaves at most 800 columns, or
-                                 ///< 8; smaller where fewer than 7 disparities would be left
+  int factor = 0;                ///< downsampling, 2, 4 or 8, in Pipeline halved where fewer than 4 disparities are
+                                 ///< left; 0: the smallest that leaves at most 800 columns, or 8; smaller where fewer
+                                 ///< than 7 disparities would be left
   int block_radius = 3;          ///< of the correlation block, coarse pixels, 1 … 10
   double ncc_noise_sigma = 1.0;  ///< standard deviation of the noise, 8-bit grey levels, 0 … 50; 0 is plain NCC
   double step_penalty = 0.15;    ///< cost of a change by one coarse pixel between neighbours, 0 … 10

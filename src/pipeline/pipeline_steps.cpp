@@ -120,9 +120,9 @@ CoarseSearchOptions Pipeline::State::coarse_options(int factor, int block_radius
 /// Disparity ranges of the tiles, and the prior of the matcher.
 MatchInput Pipeline::State::search_coarsely(const MatchInput& pair) {
   const StageTimer timer(result.ms.coarse);
-  return stages->search_coarsely(pair, result.shift,
-                                 coarse_options(coarse_factor(options.coarse_search, width, pair.disparities),
-                                                options.coarse_search.block_radius));
+  const int factor =
+      factor_with_fractions(coarse_factor(options.coarse_search, width, pair.disparities), pair.disparities);
+  return stages->search_coarsely(pair, result.shift, coarse_options(factor, options.coarse_search.block_radius));
 }
 
 /// Without a calibration the focal length is taken for the width of the image.

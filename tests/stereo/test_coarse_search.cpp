@@ -96,6 +96,9 @@ TEST(CoarseFactor, LeavesEnoughColumnsAndDisparities) {
   }
   options.factor = 8;
   EXPECT_EQ(coarse_factor(options, 640, 13), 8);
+  EXPECT_EQ(factor_with_fractions(8, 64), 8);
+  EXPECT_EQ(factor_with_fractions(8, 13), 4) << "4 disparities, of which the first and the last have no fraction";
+  EXPECT_EQ(factor_with_fractions(4, 7), 2);
 }
 
 TEST(CoarseSearch, UnrelatedImagesGiveWideRanges) {

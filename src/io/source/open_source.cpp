@@ -27,8 +27,8 @@ constexpr std::array video_extensions = {".mp4",   ".avi", ".mkv",  ".mov",  ".m
 
 std::optional<Kind> known_kind(const std::string& name) {
   if (name.find(" ! ") != std::string::npos) return Kind::gstreamer;
-  if (name.rfind("/dev/", 0) == 0) return Kind::camera;
   std::error_code ignored;
+  if (fs::is_character_file(name, ignored) || name.starts_with("/dev/video")) return Kind::camera;
   if (fs::is_directory(name, ignored)) return is_message_log(name) ? Kind::bag : Kind::folder;
   if (!fs::exists(name, ignored)) return std::nullopt;
   const std::string extension = lower_case(fs::path(name).extension().string());

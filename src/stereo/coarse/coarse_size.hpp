@@ -35,6 +35,13 @@ inline int coarse_factor(const CoarseSearchOptions& options, int width, int disp
   return factor;
 }
 
+/// Returns `factor`, halved while less than two disparities are left between the first and the last.
+inline int factor_with_fractions(int factor, int disparities) {
+  constexpr int min_disparities = 4;
+  while (factor > 2 && coarse_disparities(disparities, factor) < min_disparities) factor /= 2;
+  return factor;
+}
+
 /// Returns the disparities of all that a W×H picture shows, up to that of what stands on the nearest road in it; at
 /// most as many as a matcher takes.
 inline int scene_disparities(const PerspectiveShift& shift, int width, int height) {

@@ -154,10 +154,9 @@ double prior_term(const Scene& scene, const DisparityPriorView& prior, double be
   if (prior.disparity.empty()) return 0;
   const int x = std::min(u / prior.factor, prior.disparity.width() - 1);
   const int y = std::min(v / prior.factor, prior.disparity.height() - 1);
-  const double centre = prior.disparity(x, y);
-  if (std::isnan(centre)) return 0;
-  const double low = prior.low.empty() ? centre : prior.low(x, y);
-  const double high = prior.high.empty() ? centre : prior.high(x, y);
+  const double low = prior.low.empty() ? prior.disparity(x, y) : prior.low(x, y);
+  const double high = prior.high.empty() ? prior.disparity(x, y) : prior.high(x, y);
+  if (std::isnan(low)) return 0;
   const double distance = std::max({low - d, d - high, 0.0});
   const double weight = std::min(1.0, (best + double{prior_cost_offset}) / double{prior_full_cost});
   return weight * scene.options.prior_weight * std::min(distance, scene.options.prior_truncation_px);
