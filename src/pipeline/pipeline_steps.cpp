@@ -59,8 +59,8 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
       roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, mask, last);
   if (!result.road.has_road()) {
     result.warnings.push_back(format_message("no-road: no road was found (", result.road.reason,
-                                             "): the pair was matched over all disparities up to a quarter "
-                                             "of the width, without perspective transformation"));
+                                             "): the pair was matched without perspective transformation, over the "
+                                             "disparities that it shows, at most a quarter of the width"));
   } else if (result.road.status == RoadStatus::weak) {
     std::string reason = result.road.reason;
     if (reason.empty()) {
