@@ -5,18 +5,13 @@
 #include <optional>
 #include <span>
 
-#include "core/downsample.hpp"
 #include "core/format_message.hpp"
-#include "core/noise_correlation.hpp"
 #include "core/require_range.hpp"
 #include "core/require_size.hpp"
 #include "road/black_border.hpp"
 #include "road/coarse_match.hpp"
-#include "road/downsampled_plane.hpp"
-#include "road/masked_blocks.hpp"
+#include "road/fine_search.hpp"
 #include "road/plane_evidence.hpp"
-#include "road/plane_fit.hpp"
-#include "road/plane_match.hpp"
 #include "road/rig_prior.hpp"
 #include "road/road_assessment.hpp"
 #include "road/road_search.hpp"
@@ -24,11 +19,6 @@
 
 namespace roadstereo {
 namespace {
-
-ScratchVector<DisparityPoint> points_to_full_resolution(ScratchVector<DisparityPoint> points, int factor) {
-  for (DisparityPoint& p : points) p = {to_full_resolution(p.u, factor), to_full_resolution(p.v, factor), p.d * factor};
-  return points;
-}
 
 /// Where the correspondences near the road lie.
 void measure_range(std::span<const DisparityPoint> matches, RoadModelEstimate& estimate) {
@@ -42,44 +32,6 @@ void measure_range(std::span<const DisparityPoint> matches, RoadModelEstimate& e
   estimate.residual_p01_px = lower_quantile(residuals, residual_p01);
   estimate.residual_p99_px = lower_quantile(residuals, residual_p99);
 }
-
-/// What the fine search around a plane and a robust fit leave.
-struct Refinement {
-  PlaneFitStatistics evidence;
-  ScratchVector<DisparityPoint> points = scratch_vector<DisparityPoint>();  ///< full-size coordinates
-};
-
-/// The pair as the fine search sees it: at full size, or downsampled.
-class FinePair {
- public:
-  FinePair(ImageView<const std::int16_t> left, ImageView<const std::int16_t> right, ImageView<const std::uint8_t> mask,
-           int factor)
-      : factor_(factor), masked_(mask, factor_) {
-    // At full size there is nothing to downsample, and nothing to copy.
-    const std::size_t size = factor_ > 1 ? left.pixels() / static_cast<std::size_t>(factor_ * factor_) : 0;
-    pixels_.resize(2 * size);
-    left_ = downsampled(left, pixels_.data());
-    right_ = downsampled(right, pixels_.data() + size);
-  }
-
-  ImageView<const std::int16_t> left() const { return left_; }
-  ImageView<const std::int16_t> right() const { return right_; }
-  const MaskedBlocks& masked() const { return masked_; }
-  int factor() const { return factor_; }
-
- private:
-  ImageView<const std::int16_t> downsampled(ImageView<const std::int16_t> image, std::int16_t* pixels) const {
-    if (factor_ == 1) return image;
-    const ImageView<std::int16_t> small(pixels, image.width() / factor_, image.height() / factor_);
-    downsample(image, factor_, small);
-    return small;
-  }
-
-  int factor_;
-  MaskedBlocks masked_;
-  ScratchVector<std::int16_t> pixels_ = scratch_vector<std::int16_t>();
-  ImageView<const std::int16_t> left_, right_;
-};
 
 /// The pair at full size, and downsampled as for the coarse search, where noise that hides every block averages out;
 /// that is made when it is asked for.
@@ -107,69 +59,6 @@ class FinePairs {
   int coarse_factor_;
   FinePair full_;
   std::optional<FinePair> downsampled_;
-};
-
-using PlaneMatcher = decltype(match_along_plane);
-
-Refinement refine_road(const FinePair& pair, const DisparityPlane& plane, PlaneMatcher match, const FineSearch& search,
-                       bool with_roll, int threads) {
-  const int factor = pair.factor();
-  const int height = pair.left().height() * factor;
-  PlaneMatches found = match(pair.left(), pair.right(), downsample_plane(plane, factor), search.range_px, search.places,
-                             threads, pair.masked());
-  Refinement result;
-  PlaneFitStatistics& evidence = result.evidence;
-  evidence.tried = found.tried;
-  evidence.by_cells = match == match_cells_along_plane;
-  if (found.correlations.size() >= static_cast<std::size_t>(min_matches)) {
-    evidence.correlation = full_size_correlation(lower_quantile(found.correlations, correlation_p10), factor);
-  }
-  result.points = points_to_full_resolution(std::move(found.points), factor);
-  evidence.points = static_cast<int>(result.points.size());
-  if (evidence.points < found.min_points) return result;
-  const auto fit = fit_plane_irls(result.points, plane, fine_fit_scale * factor, with_roll, fine_fit_iterations);
-  if (!fit) return result;
-  evidence.plane = fit->plane;
-  evidence.scale_px = fit->scale_px;
-  auto rows = scratch_vector<double>();
-  for (std::size_t i = 0; i < result.points.size(); ++i) {
-    if (fit->weights[i] > 0) rows.push_back(result.points[i].v);
-  }
-  evidence.inliers = static_cast<int>(rows.size());
-  evidence.found = evidence.inliers >= found.min_points;
-  if (evidence.found) {
-    evidence.rows_covered = (lower_quantile(rows, row_p95) - lower_quantile(rows, row_p05)) / height;
-  }
-  return result;
-}
-
-/// The plane that most of the image around `plane` supports, by RANSAC over cells of equal size; `plane` where there is
-/// none. Single blocks match where the texture is: on a pavement or a verge rather than on a smooth road, so that the
-/// plane tips over.
-DisparityPlane fit_evenly(const FinePair& pair, const DisparityPlane& plane, const TiltLimit& limit, bool with_roll,
-                          int threads) {
-  const int factor = pair.factor();
-  const int places = static_cast<int>(pair.left().pixels() / (std::size_t{even_spacing_px} * even_spacing_px));
-  const PlaneMatches found = match_cells_along_plane(pair.left(), pair.right(), downsample_plane(plane, factor),
-                                                     even_range_px, places, threads, pair.masked());
-  const auto points = points_to_full_resolution(found.points, factor);
-  if (points.size() < min_even_points) return plane;
-  const auto start = ransac_plane(points, even_tolerance * factor);
-  if (!start || !limit.can_be_road(*start)) return plane;
-  const auto fit = fit_plane_irls(points, *start, fine_fit_scale * factor, with_roll, fine_fit_iterations);
-  return fit && limit.can_be_road(fit->plane) ? fit->plane : plane;
-}
-
-/// What two searches by the same blocks find: wide around a supposed plane, then close around where the first finds it.
-struct TwoSearches {
-  Refinement wide, close;
-
-  TwoSearches(const FinePair& pair, const DisparityPlane& plane, PlaneMatcher match, const FineSearch& first,
-              const FineSearch& second, bool with_roll, int threads)
-      : wide(refine_road(pair, plane, match, first, with_roll, threads)) {
-    if (wide.evidence.found) close = refine_road(pair, wide.evidence.plane, match, second, with_roll, threads);
-  }
-  const PlaneFitStatistics& last() const { return wide.evidence.found ? close.evidence : wide.evidence; }
 };
 
 /// By single blocks, and where these find nothing by cells of them.
@@ -294,9 +183,6 @@ struct RoadSearch {
   RoadModelEstimate in_range(const CoarseRange& range) const {
     const CoarseMatches coarse = match_coarsely(left, right, range.factor, range.max_disparity_px, threads, mask);
     const ScratchVector<DisparityPoint>& matches = coarse.points;
-    if (look_swapped(left, right, range.factor, range.max_disparity_px, matches.size(), threads, mask)) {
-      fail("left and right look swapped: the matches lie at negative disparities");
-    }
     RoadModelEstimate estimate;
     estimate.matches = static_cast<int>(matches.size());
     const bool few_match = estimate.matches < min_matches;
@@ -368,7 +254,11 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   const PictureMask picture(left, mask);
   const RoadSearch search{left, right, picture.view(), calibration, options, threads, last};
   const CoarseRange whole{coarse_factor(left.width(), left.height()), options.max_disparity_share * left.width()};
-  RoadModelEstimate found = search.in_range(whole);
+  const RoadModelEstimate found = search.in_range(whole);
+  if (look_swapped(left, right, whole.factor, whole.max_disparity_px, static_cast<std::size_t>(found.matches), threads,
+                   picture.view())) {
+    fail("left and right look swapped: the matches lie at negative disparities");
+  }
   if (found.status == RoadStatus::found) return found;
   const std::optional<CoarseRange> seen = range_of_matches(found, whole);
   if (!seen) return found;
