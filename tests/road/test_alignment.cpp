@@ -38,6 +38,38 @@ TEST(MeasureRows, StreetOffsetIsWithinTwentiethOfPixel) {
   EXPECT_NEAR(rows.median_px, 0.5, 0.05);
 }
 
+/// Six times as large, bilinear: soft, as video of 3840 columns is.
+GreyImage enlarged(const GreyImage& small) {
+  constexpr int factor = 6;
+  GreyImage large(factor * small.width(), factor * small.height());
+  for (int v = 0; v < large.height(); ++v) {
+    const double y = std::clamp((v + 0.5) / factor - 0.5, 0.0, small.height() - 1.001);
+    const int top = static_cast<int>(y);
+    for (int u = 0; u < large.width(); ++u) {
+      const double x = std::clamp((u + 0.5) / factor - 0.5, 0.0, small.width() - 1.001);
+      const int left = static_cast<int>(x);
+      const double above = std::lerp(small(left, top), small(left + 1, top), x - left);
+      const double below = std::lerp(small(left, top + 1), small(left + 1, top + 1), x - left);
+      large(u, v) = static_cast<std::int16_t>(std::lround(std::lerp(above, below, y - top)));
+    }
+  }
+  return large;
+}
+
+TEST(MeasureRows, SoftLargePictureShowsAsManyPoints) {
+  synth::Scene scene = synth::named_scene("uav");
+  scene.supersampling = 1;
+  scene.degradation.row_offset_px = 0.5;
+  const synth::SyntheticPair pair = synth::render(scene);
+  GreyImage left, right;
+  to_grey(pair.left.view(), 0, left);
+  to_grey(pair.right.view(), 0, right);
+  const RowAlignment small = measure_row_alignment(left, right);
+  const RowAlignment large = measure_row_alignment(enlarged(left), enlarged(right));
+  EXPECT_GT(large.points, 0.9 * small.points);
+  EXPECT_NEAR(large.median_px, 3.0, 0.3);
+}
+
 // The lower half is 3 rows off, as a reflection in a bonnet may be.
 TEST(MeasureRows, MaskedPartTakesNoPart) {
   synth::Scene scene = synth::named_scene("uav");
