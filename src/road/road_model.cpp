@@ -254,7 +254,7 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   const PictureMask picture(left, mask);
   const RoadSearch search{left, right, picture.view(), calibration, options, threads, last};
   const CoarseRange whole{coarse_factor(left.width(), left.height()), options.max_disparity_share * left.width()};
-  const RoadModelEstimate found = search.in_range(whole);
+  RoadModelEstimate found = search.in_range(whole);
   if (look_swapped(left, right, whole.factor, whole.max_disparity_px, static_cast<std::size_t>(found.matches), threads,
                    picture.view())) {
     fail("left and right look swapped: the matches lie at negative disparities");
