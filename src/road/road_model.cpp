@@ -180,6 +180,7 @@ struct RoadSearch {
   int threads;
   const std::optional<DisparityPlane>& last;
 
+  /// The road with the most evidence among the disparities of a range, or why there is none.
   RoadModelEstimate in_range(const CoarseRange& range) const {
     const CoarseMatches coarse = match_coarsely(left, right, range.factor, range.max_disparity_px, threads, mask);
     const ScratchVector<DisparityPoint>& matches = coarse.points;

@@ -11,15 +11,24 @@
 namespace roadstereo {
 namespace {
 
-RowAlignment measure(const char* name, double row_offset_px) {
+struct GreyPair {
+  GreyImage left, right;
+};
+
+GreyPair render(const char* name, double row_offset_px) {
   synth::Scene scene = synth::named_scene(name);
   scene.supersampling = 1;
   scene.degradation.row_offset_px = row_offset_px;
   const synth::SyntheticPair pair = synth::render(scene);
-  GreyImage left, right;
-  to_grey(pair.left.view(), 0, left);
-  to_grey(pair.right.view(), 0, right);
-  return measure_row_alignment(left, right);
+  GreyPair grey;
+  to_grey(pair.left.view(), 0, grey.left);
+  to_grey(pair.right.view(), 0, grey.right);
+  return grey;
+}
+
+RowAlignment measure(const char* name, double row_offset_px) {
+  const GreyPair pair = render(name, row_offset_px);
+  return measure_row_alignment(pair.left, pair.right);
 }
 
 TEST(MeasureRows, RoadOffsetIsWithinTenthOfPixel) {
@@ -57,13 +66,7 @@ GreyImage enlarged(const GreyImage& small) {
 }
 
 TEST(MeasureRows, SoftLargePictureShowsAsManyPoints) {
-  synth::Scene scene = synth::named_scene("uav");
-  scene.supersampling = 1;
-  scene.degradation.row_offset_px = 0.5;
-  const synth::SyntheticPair pair = synth::render(scene);
-  GreyImage left, right;
-  to_grey(pair.left.view(), 0, left);
-  to_grey(pair.right.view(), 0, right);
+  const auto [left, right] = render("uav", 0.5);
   const RowAlignment small = measure_row_alignment(left, right);
   const RowAlignment large = measure_row_alignment(enlarged(left), enlarged(right));
   EXPECT_GT(large.points, 0.9 * small.points);
@@ -72,12 +75,7 @@ TEST(MeasureRows, SoftLargePictureShowsAsManyPoints) {
 
 // The lower half is 3 rows off, as a reflection in a bonnet may be.
 TEST(MeasureRows, MaskedPartTakesNoPart) {
-  synth::Scene scene = synth::named_scene("uav");
-  scene.supersampling = 1;
-  const synth::SyntheticPair pair = synth::render(scene);
-  GreyImage left, right;
-  to_grey(pair.left.view(), 0, left);
-  to_grey(pair.right.view(), 0, right);
+  auto [left, right] = render("uav", 0);
   Image<std::uint8_t> mask(left.width(), left.height(), 0);
   for (int v = left.height() / 3; v < left.height(); ++v) {
     std::fill_n(mask.row(v), mask.width(), std::uint8_t{255});
