@@ -154,6 +154,30 @@ TEST(RoadUndulation, ReproducesLinearHeights) {
   EXPECT_TRUE(std::isnan(values[1]));
 }
 
+// A metre of height is 28 px of disparity 4 m ahead and 2.8 px 40 m ahead, where a node has a tenth of the samples.
+TEST(RoadUndulation, SolvesFarNodesAsWellAsNearOnes) {
+  constexpr double focal_px = 1400, baseline_m = 0.12, camera_m = 1.5;
+  std::vector<double> x, y, scale, value;
+  const auto height_m = [](double across, double ahead) { return 0.003 * across + 0.002 * (ahead - 20); };
+  for (int v = 52; v < 540; v += 2) {
+    for (int u = -960; u < 960; u += 16) {
+      y.push_back(focal_px * camera_m / v);
+      x.push_back(u * y.back() / focal_px);
+      scale.push_back(focal_px * baseline_m / y.back() / camera_m);
+      value.push_back(scale.back() * height_m(x.back(), y.back()));
+    }
+  }
+  const std::vector<double> weight(x.size(), 1 / (0.03 * 0.03));
+  RoadUndulation undulation(x, y);
+  undulation.fit(scale, value, weight);
+  double worst_m = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (y[k] > 35 || std::abs(x[k]) > 8) continue;  // the prior counts at the sides
+    worst_m = std::max(worst_m, std::abs(undulation.height(k) - height_m(x[k], y[k])));
+  }
+  EXPECT_LT(worst_m, 1.5e-3);
+}
+
 TEST(RoadUndulation, NeedsMoreThanOneCell) {
   const std::vector<double> x{0, 1.4, 0, 1.4}, y{2, 2, 3.4, 3.4};
   EXPECT_TRUE(RoadUndulation(x, y).empty());
