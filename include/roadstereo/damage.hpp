@@ -46,6 +46,8 @@ struct DamageOptions {
 struct DamageInput {
   ImageView<const float> transformed;  ///< ℓ', pixels; NaN invalid. Depressions lie below the road, protrusions above
   ImageView<const float> disparity;    ///< ℓ, pixels; required for metric results, with `plane` for slopes of walls
+  ImageView<const float> matched;      ///< what `disparity` was before a rig bias was subtracted from it: where in `right`
+                                       ///< a pixel is found; empty: `disparity` itself
   ImageView<const float> sigma;  ///< standard error of ℓ, pixels; when absent, noise is estimated from `transformed`
   int smoothing_px = 0;          ///< RefinementOptions::smoothing_px of the maps, 0 … 32; tells how far walls spread
   ImageView<const std::int16_t> grey;  ///< left image, 1/16 grey level (`to_grey`); refines outlines at holes
@@ -59,6 +61,9 @@ struct DamageInput {
   std::optional<DisparityPlane> plane;  ///< the road's plane in ℓ, in whose coordinates the surface is fitted; required
                                         ///< for metric results
   std::optional<StereoCalibration> calibration;  ///< required for metric results
+
+  /// Disparity between the two images.
+  ImageView<const float> disparity_in_images() const { return matched.empty() ? disparity : matched; }
 };
 
 /// Metric properties of a damage. Depth is measured along the road's normal from the undamaged surface, interpolated
@@ -87,12 +92,12 @@ struct DamageMetrics {
   Severity severity = Severity::unknown;
 };
 
-/// Return the figures that decided the distress, in words: slope of the wall, elongation, direction.
+/// Return the figures that decided the distress, in words: slope of the wall, elongation.
 std::string distress_reason(const DamageMetrics& metrics);
 
 /// Return the severity in words: a class, a range such as "medium–high" where no class has more than half of the
 /// probability, "unresolvable", or "not graded" if there is no table or the area or the depth is uncertain by more than
-/// ±50 %.
+/// ±50 %, unless any greater depth has the same severity.
 std::string severity_text(const DamageMetrics& metrics);
 
 /// Evidence that distinguishes a damage from noise and from objects beside the road. No single value decides.

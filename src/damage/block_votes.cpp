@@ -173,7 +173,7 @@ void vote_lanes(const DamageInput& input, int v, std::span<const int> u, std::sp
   for (int y = v - block_radius; y <= v + block_radius; ++y) {
     const RightRow row(input, y);
     const std::int16_t* const grey = input.grey.row(y);
-    const float *const disparity = input.disparity.row(y), *const transformed = input.transformed.row(y);
+    const float *const disparity = input.disparity_in_images().row(y), *const transformed = input.transformed.row(y);
     for (int x = -block_radius; x <= block_radius; ++x, ++k) {
       Lanes<float> disparities, transforms, at, at_road;
       for (std::size_t l = 0; l < lanes; ++l) {
@@ -201,7 +201,7 @@ void vote_lanes(const DamageInput& input, int v, std::span<const int> u, std::sp
 
 void vote_for_blocks(const DamageInput& input, int v, std::span<const int> u, std::span<const float> surface,
                      std::span<float> votes) {
-  std::fill(votes.begin(), votes.end(), 0.0F);
+  std::fill(votes.begin(), votes.end(), unknown);
   if (v < block_radius || v + block_radius >= input.grey.height()) return;
   if (input.grey.width() <= 2 * block_radius) return;
   for (std::size_t first = 0; first < u.size(); first += max_lanes) vote_lanes(input, v, u, surface, first, votes);

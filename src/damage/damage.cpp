@@ -36,6 +36,7 @@ void require_input(const DamageInput& input) {
          min_size);
   }
   require_size(input.disparity, map, "disparity map");
+  require_size(input.matched, map, "map of matched disparities");
   require_size(input.sigma, map, "map of standard errors");
   require_size(input.grey, map, "image");
   require_size(input.right, map, "right image");

@@ -135,10 +135,10 @@ class RangeVote {
 
   void add_measured(int u, int v, int y, WindowSums& sums) const {
     const float centre = input_.grey(u, v);
-    const float* const disparity = input_.disparity.row(y);
+    const float* const disparity = input_.disparity_in_images().row(y);
     for (int x = u - window_radius; x <= u + window_radius; ++x) {
       const double at = x - double{disparity[x]};
-      if (std::isnan(at)) continue;
+      if (!std::isfinite(at)) continue;
       const float right = right_(at, y, right_.row(at, y)) - centre;
       if (!std::isnan(right)) sums.add(static_cast<float>(input_.grey(x, y)) - centre, right);
     }

@@ -34,7 +34,7 @@ class WindowMeans {
     double left = 0, right = 0;
     int pixels = 0, count = 0;
     for (int y = std::max(v - radius, 0); y <= v1; y += step) {
-      const float* const disparity = input_.disparity.row(y);
+      const float* const disparity = input_.disparity_in_images().row(y);
       for (int x = std::max(u - radius, 0); x <= u1; x += step) {
         ++pixels;
         const double at = x - double{disparity[x]};

@@ -87,8 +87,8 @@ class VoteIntegral {
     VoteSums sum;
     std::size_t next = 0;
     for (int k = 0; k < blocks_before(columns_); ++k) {
-      if (sums[k].blocks > 0) sums[k].votes = double{row.votes[next++]};
-      sums[k] = sum += sums[k];
+      const float vote = sums[k].blocks > 0 ? row.votes[next++] : 0.0F;
+      sums[k] = sum += std::isnan(vote) ? VoteSums{} : VoteSums{double{vote}, sums[k].blocks};
     }
   }
 
@@ -112,8 +112,11 @@ double surface_significance(const DamageInput& input, const DamageMap& maps, int
       if (maps.ids(u, v) == id) row.add(u, maps.surface(u, v) + static_cast<float>(offset));
     }
     row.vote(input, v);
-    for (const float vote : row.votes) votes += vote;
-    blocks += static_cast<double>(row.votes.size());
+    for (const float vote : row.votes) {
+      if (std::isnan(vote)) continue;
+      votes += vote;
+      ++blocks;
+    }
   }
   const double independent =
       blocks * std::min(1.0, static_cast<double>(step * step) / static_cast<double>(block_pixels));

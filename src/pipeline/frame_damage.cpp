@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "road/black_border.hpp"
+#include "road/rig_bias_field.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/pipeline.hpp"
 
@@ -42,6 +43,17 @@ void remove_masked(const FrameResult& frame, DamageMap& map) {
   }
 }
 
+/// The disparities between the images.
+Image<float> with_bias(ImageView<const float> disparity, const RigBias& bias) {
+  Image<float> matched(disparity.width(), disparity.height());
+  const BiasPolynomial<float> field = bias_polynomial<float>(bias);
+  for (int v = 0; v < disparity.height(); ++v) {
+    const BiasRow<float> row = field.row(static_cast<float>(v));
+    for (int u = 0; u < disparity.width(); ++u) matched(u, v) = disparity(u, v) + row.at(static_cast<float>(u));
+  }
+  return matched;
+}
+
 }  // namespace
 
 DamageMap find_damage(const FrameResult& frame, const std::optional<StereoCalibration>& calibration,
@@ -66,6 +78,11 @@ void find_damage(const FrameResult& frame, const std::optional<StereoCalibration
   DamageInput input;
   input.transformed = frame.transformed;
   input.disparity = frame.disparity;
+  Image<float> matched;
+  if (frame.rig_bias) {
+    matched = with_bias(frame.disparity, *frame.rig_bias);
+    input.matched = matched;
+  }
   input.sigma = frame.sigma;
   input.smoothing_px = frame.smoothing_px;
   input.grey = frame.grey;

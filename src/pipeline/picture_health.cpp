@@ -39,7 +39,7 @@ struct Match {
 
 /// Nothing off the road, without a disparity, and where fewer than `margin` pixels lie around the match.
 std::optional<Match> match_of(const FrameResult& frame, const DamageMap& damage, int u, int v, int margin) {
-  const double disparity = frame.disparity(u, v);
+  const double bias = frame.rig_bias ? frame.rig_bias->at(u, v) : 0, disparity = frame.disparity(u, v) + bias;
   if (damage.road(u, v) == 0 || std::isnan(disparity)) return std::nullopt;
   const Misalignment& misalignment = frame.shift.misalignment;
   const double x = u - disparity, column = x + misalignment.columns_at(v), row = v + misalignment.rows_at(x, v);

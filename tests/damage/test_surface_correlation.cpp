@@ -72,6 +72,28 @@ TEST(SurfaceCorrelation, RowOffsetIsUndone) {
   for (const Damage& damage : map.damages) EXPECT_GT(damage.evidence.surface_significance, 3);
 }
 
+/// The rig's bias is no part of the disparities, but the right picture is found with it.
+TEST(SurfaceCorrelation, RigBiasIsAddedBack) {
+  const ClaimedHollow claimed;
+  constexpr float bias_px = 0.7F;
+  DamageInput input = damaged().metric();
+  input.grey = claimed.left;
+  input.right = claimed.right;
+  const DamageMap without = find_damage(input);
+  Image<float> corrected = damaged().disparity;
+  for (std::size_t k = 0; k < corrected.pixels(); ++k) corrected.row(0)[k] -= bias_px;
+  input.disparity = corrected;
+  input.matched = damaged().disparity;
+  input.plane->a0 -= bias_px;
+  const DamageMap with = find_damage(input);
+  ASSERT_EQ(without.damages.size(), 2U);
+  ASSERT_EQ(with.damages.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double expected = without.damages[k].evidence.surface_significance;
+    EXPECT_NEAR(with.damages[k].evidence.surface_significance, expected, 0.05 * expected);
+  }
+}
+
 TEST(DamageEvidence, SurfaceThatPicturesContradictIsNoDamage) {
   DamageEvidence evidence{20, 90, 3, 1, 0};
   EXPECT_GT(evidence.confidence(), 0.95);
