@@ -13,6 +13,7 @@ namespace roadstereo {
 ///   road-anew        the last frame's road did not fit, or not the expected pose: the road was searched again
 ///   tilted-road      the plane through the disparities is too steep for a road: as no-road
 ///   unexpected-pose  height or pitch are not what was expected
+///   negative-disparities  what is far has a negative disparity by the calibration, and is not searched
 ///   rows-disagree    the rows of the pair are shifted: it is not rectified
 ///   rows-unknown     the row alignment could not be measured: too few points, or they contradict each other
 ///   few-disparities  too few pixels have a disparity, or only some on one line of the image

@@ -38,10 +38,21 @@ GreyPair Pipeline::State::align_on_host(const GreyPair& pair) {
   return {pair.left, aligned_right, pair.mask};
 }
 
+/// What is so far that its disparity is negative, since the right camera looks inwards, is not searched.
+void Pipeline::State::warn_of_negative_disparities() {
+  constexpr double noteworthy_px = 1;
+  if (!calibration || calibration->disparity_offset_px <= noteworthy_px) return;
+  const double offset = calibration->disparity_offset_px;
+  result.warnings.push_back(format_message(
+      "negative-disparities: the disparity offset of the calibration is ", offset, " px, so that what is farther than ",
+      calibration->focal_px * calibration->baseline_m / offset, " m has a negative disparity and is not searched"));
+}
+
 /// Road model Δu, eq. (4): the last frame's when it still fits, else from the images.
 void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   const StageTimer timer(result.ms.road_model);
   const RigPrior expected(options.road_model, calibration);
+  warn_of_negative_disparities();
   result.rows = {};
   if (carried.road) {
     if (options.check_rows && rows_are_due(carried)) measure_rows(stages->on_host(pair), Rows::of_tracked_road);
@@ -54,7 +65,9 @@ void Pipeline::State::estimate_road_model(const GreyPair& pair) {
   const GreyPair on_host = stages->on_host(pair);
   if (options.check_rows) measure_rows(on_host, Rows::of_new_road);
   const GreyPair grey = align_on_host(on_host);
-  const auto last = carried.road ? std::optional(carried.road->model) : std::nullopt;
+  // A plane with another pose than expected is what the search is to replace.
+  const bool is_expected = carried.road && expected.disagreement(carried.road->model).empty();
+  const auto last = is_expected ? std::optional(carried.road->model) : std::nullopt;
   result.road =
       roadstereo::estimate_road_model(grey.left, grey.right, calibration, options.road_model, threads, mask, last);
   if (!result.road.has_road()) {

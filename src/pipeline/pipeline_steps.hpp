@@ -39,6 +39,7 @@ struct Pipeline::State {
   GreyPair convert_to_grey(const FrameView& left, const FrameView& right);
   GreyPair undo_misalignment(const GreyPair& pair);
   GreyPair align_on_host(const GreyPair& pair);
+  void warn_of_negative_disparities();
   void estimate_road_model(const GreyPair& pair);
   void track_in_noise(const GreyPair& pair);
   void measure_rows(const GreyPair& grey, Rows of);

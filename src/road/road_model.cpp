@@ -256,8 +256,10 @@ RoadModelEstimate estimate_road_model(ImageView<const std::int16_t> left, ImageV
   const RoadSearch search{left, right, picture.view(), calibration, options, threads, last};
   const CoarseRange whole{coarse_factor(left.width(), left.height()), options.max_disparity_share * left.width()};
   RoadModelEstimate found = search.in_range(whole);
-  if (look_swapped(left, right, whole.factor, whole.max_disparity_px, static_cast<std::size_t>(found.matches), threads,
-                   picture.view())) {
+  constexpr double noteworthy_px = 1;  // what is far has a negative disparity then
+  const bool crosses_zero = calibration && calibration->disparity_offset_px > noteworthy_px;
+  if (!crosses_zero && look_swapped(left, right, whole.factor, whole.max_disparity_px,
+                                    static_cast<std::size_t>(found.matches), threads, picture.view())) {
     fail("left and right look swapped: the matches lie at negative disparities");
   }
   if (found.status == RoadStatus::found) return found;
