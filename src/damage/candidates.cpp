@@ -113,7 +113,9 @@ void add_potholes_of_rut(const SearchInput& input, float min_cells, SearchImages
     found.push_back(std::move(pothole));
   }
   images.depth = depth;
-  if (found.size() > before) update_extent(input, assigned, rut);
+  if (found.size() == before) return;
+  update_extent(input, assigned, rut);
+  if (rut.size > 0) add_evidence(input, images, rut);
 }
 
 float min_cells_at(const ConnectedComponent& core, const Thresholds& thresholds) {
@@ -193,13 +195,14 @@ class KindSearch {
     return {depth_, allowed_, visited, assigned_, {}};
   }
 
+  /// Whether most of a core belongs to a damage, or some of one that a saddle divides from others.
   bool is_assigned(const Core& core) const {
-    const auto runs = core.is_divided ? core.cells.runs : core.cells.runs.first(1);
-    return std::any_of(runs.begin(), runs.end(), [&](const CellRun& run) {
+    std::ptrdiff_t count = 0;
+    for (const CellRun& run : core.cells.runs) {
       const std::uint8_t* const labels = assigned_.row(run.row);
-      return std::any_of(labels + run.first, labels + (core.is_divided ? run.last : run.first) + 1,
-                         [](std::uint8_t label) { return label != 0; });
-    });
+      count += std::count_if(labels + run.first, labels + run.last + 1, [](std::uint8_t label) { return label != 0; });
+    }
+    return core.is_divided ? count > 0 : 2 * static_cast<std::size_t>(count) > core.cells.size;
   }
 
   /// Number of the first cores to examine together: `beside` that may be parts of the same damage, and more as long as
@@ -248,9 +251,12 @@ class KindSearch {
   }
 
   void add(const ConnectedComponent& core, Candidate candidate, std::vector<Candidate>& found) {
-    if (candidate.evidence.rut_significance > 0) {
+    if (lies_in_rut(candidate.evidence)) {
+      const float min_cells = min_cells_at(core, input_.thresholds);
       SearchImages images = images_of(0);
-      add_potholes_of_rut(input_, min_cells_at(core, input_.thresholds), images, assigned_, candidate, found);
+      add_potholes_of_rut(input_, min_cells, images, assigned_, candidate, found);
+      const bool is_large = candidate.size > 0 && static_cast<float>(candidate.size) >= min_cells;
+      if (!is_large || confidence_at_best(candidate, input_.thresholds) < min_candidate_confidence) return;
     }
     assign(candidate, assigned_);
     found.push_back(std::move(candidate));

@@ -41,4 +41,11 @@ void CommonView::fill_outside(Image<std::uint8_t>& mask) const {
   }
 }
 
+void CommonView::fill_masked(Image<std::uint8_t>& mask) const {
+  const std::size_t cells = masked_.empty() ? 0 : mask.pixels();
+  for (std::size_t k = 0; k < cells; ++k) {
+    if (masked_.row(0)[k] != 0) mask.row(0)[k] = 255;
+  }
+}
+
 }  // namespace roadstereo

@@ -24,6 +24,8 @@ class CommonView {
   bool is_at_side(int i, int j) const { return i == first_column(j) || i + 1 == columns_; }
   /// Set the cells of a mask outside the view to 255.
   void fill_outside(Image<std::uint8_t>& mask) const;
+  /// Set the masked cells of a mask to 255.
+  void fill_masked(Image<std::uint8_t>& mask) const;
   /// Remove the measurements outside: what is matched there is not the road, but an accident in what is left of the
   /// search range.
   void remove_outside(Cells& cells) const;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <numbers>
 #include <sstream>
 
 #include "core/degrees.hpp"
+#include "damage/ruts.hpp"
 
 namespace roadstereo {
 namespace {
@@ -18,7 +20,6 @@ constexpr double min_step_m = 0.025;      // ASTM D6433, lane/shoulder drop-off
 constexpr double min_kerb_m = 0.75;       // ASTM D6433, potholes count by number up to that: what the side cuts of one
 constexpr double min_object_slope = 1;    // stones and branches have sides of 45° and more, bumps and heaves have not
 constexpr double max_object_m = 1.5;      // twice 0.75 m: no pothole is as long, no object on the road as wide
-constexpr double min_rut_sigmas = 7;      // half of a region in a rut of the fewest, 14
 constexpr double max_oblique_rad = std::numbers::pi / 6;  // from the direction of the road
 
 double elongation(const DamageMetrics& metrics) {
@@ -52,6 +53,14 @@ bool is_size_known(const DamageMetrics& metrics) {
   return is_known(metrics.area_m2) && is_known(graded_depth(metrics));
 }
 
+/// The severity of a depth and of all greater ones; `uncertain` if they differ.
+Severity severity_from(double depth_m, const SeverityTable& table, const Measurement& diameter_m) {
+  constexpr double deepest = std::numeric_limits<double>::infinity();
+  const Severity least = likely_severity(severity_probabilities(table, {depth_m, 0}, diameter_m));
+  return least == likely_severity(severity_probabilities(table, {deepest, 0}, diameter_m)) ? least
+                                                                                          : Severity::uncertain;
+}
+
 }  // namespace
 
 const char* name_of(DamageKind kind) {
@@ -67,7 +76,7 @@ Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, d
     return object ? Distress::debris : Distress::bump;
   }
   const bool long_one = elongation(metrics) >= min_elongation;
-  const bool in_rut = damage.evidence.rut_significance >= min_rut_sigmas && metrics.length_m > max_object_m;
+  const bool in_rut = lies_in_rut(damage.evidence) && metrics.length_m > max_object_m;
   const bool along = (long_one || in_rut) && is_along_road(metrics, mount_yaw_deg);
   if (gentle) return along ? Distress::rut : Distress::depression;
   if (long_one && metrics.area_m2.value < min_pothole_m * metrics.length_m) return Distress::crack;
@@ -83,7 +92,7 @@ std::string distress_reason(const DamageMetrics& metrics) {
   return text.str();
 }
 
-void grade(const SeverityScheme& scheme, bool resolvable, DamageMetrics& metrics) {
+void grade(const SeverityScheme& scheme, const GradedDepth& depth, DamageMetrics& metrics) {
   const SeverityTable* const table = scheme.find(metrics.distress);
   metrics.severity_probabilities = {};
   metrics.severity = Severity::unknown;
@@ -92,11 +101,14 @@ void grade(const SeverityScheme& scheme, bool resolvable, DamageMetrics& metrics
       table == nullptr ? 1 : table->quantity(metrics.area_m2.value, metrics.length_m, metrics.diameter_m);
   const double area_error = metrics.area_m2.std_error / metrics.area_m2.value;
   if (table != nullptr && !table->classes.empty()) {
-    metrics.severity_probabilities = severity_probabilities(
-        *table, graded_depth(metrics), {metrics.diameter_m, 0.5 * metrics.diameter_m * area_error});
+    const Measurement diameter_m{metrics.diameter_m, 0.5 * metrics.diameter_m * area_error};
+    metrics.severity_probabilities = severity_probabilities(*table, graded_depth(metrics), diameter_m);
     metrics.severity = is_size_known(metrics) ? likely_severity(metrics.severity_probabilities) : Severity::uncertain;
+    if (depth.at_least && is_known(metrics.area_m2)) {
+      metrics.severity = severity_from(graded_depth(metrics).value, *table, diameter_m);
+    }
   }
-  if (!resolvable) metrics.severity = Severity::unresolvable;
+  if (!depth.resolvable) metrics.severity = Severity::unresolvable;
 }
 
 std::string severity_text(const DamageMetrics& metrics) {

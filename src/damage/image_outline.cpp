@@ -114,24 +114,24 @@ double log_ratio(double grey, const RobustNormal& one, const RobustNormal& other
 
 }  // namespace
 
-void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uint8_t>& unseen,
+void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uint8_t>& hidden,
                              const BoxMask& other_hollows, int window_rows, BoxMask& region) {
   // Prior log-odds of the road: most of these cells were measured on it.
   constexpr double min_log_ratio = 1.5;
   constexpr std::size_t min_samples = 30;
-  const int radius = image_edges.window_radius, columns = unseen.width(), rows = unseen.height();
+  const int radius = image_edges.window_radius, columns = hidden.width(), rows = hidden.height();
   const CellBox around = region.box().grown(3 * radius, columns, rows);
-  const auto clear_unseen = [&](BoxMask& mask) {
+  const auto clear_hidden = [&](BoxMask& mask) {
     for (int j = 0; j < around.rows(); ++j) {
-      clear(unseen.row(around.first_row + j) + around.first_column, around.columns(), mask.cells().row(j));
+      clear(hidden.row(around.first_row + j) + around.first_column, around.columns(), mask.cells().row(j));
     }
   };
   BoxMask core = erode(region, 2, around);
-  clear_unseen(core);
+  clear_hidden(core);
   if (cell_count(core) < min_samples) return;
   const BoxMask near = dilate(region, radius, window_rows, around);
   BoxMask far = dilate(near, 2 * radius, 2 * window_rows, around);
-  clear_unseen(far);
+  clear_hidden(far);
   clear(near.cells().row(0), static_cast<int>(near.cells().pixels()), far.cells().row(0));
   const BoxMap grey = smooth_grey_cells(image_edges, around, columns, rows);
   const Octants octants(region.box());
@@ -157,7 +157,7 @@ void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uin
     const CellIndex cell = front.back();
     front.pop_back();
     for_each_neighbour(cell.column, cell.row, columns, rows, [&](int i, int j) {
-      if (region(i, j) || !near(i, j) || unseen(i, j) != 0 || other_hollows(i, j) || !is_inside(grey(i, j), i, j))
+      if (region(i, j) || !near(i, j) || hidden(i, j) != 0 || other_hollows(i, j) || !is_inside(grey(i, j), i, j))
         return;
       region.set(i, j);
       front.push_back({i, j});

@@ -20,9 +20,9 @@ struct ImageEdges {
 /// to it and the likelihood of their grey level inside, or of the median there if they differ even more from the road,
 /// is at least 4.5 times that on the road, and that of their level is larger than on the road in their octant: a
 /// shadow, a patch or a stain that ends at the damage is no part of it. What is on the other side of the road's tone
-/// does not, nor does what is `unseen` (not 0), of the size of the image of cells: under a mask the picture shows no
+/// does not, nor does what is `hidden` (not 0), of the size of the image of cells: under a mask the picture shows no
 /// road. Nor do `other_hollows`, which may be as dark.
-void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uint8_t>& unseen,
+void refine_outline_by_image(const ImageEdges& image_edges, const Image<std::uint8_t>& hidden,
                              const BoxMask& other_hollows, int window_rows, BoxMask& region);
 
 }  // namespace roadstereo

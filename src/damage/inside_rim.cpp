@@ -79,12 +79,12 @@ bool keep_largest_part(const BoxMask& within, BoxMask& region) {
 }  // namespace
 
 BoxMask inside_rim(const SearchInput& input, const SearchImages& images, const Candidate& candidate) {
-  if (!input.thresholds.metric() || candidate.evidence.rut_significance > 0) return {};
+  if (!input.thresholds.metric() || lies_in_rut(candidate.evidence)) return {};
   BoxMask inside = candidate.cells;
   const float floor = floor_of(depths_inside(images, candidate));
   if (!peel_to_rim(images.depth, floor, input.depth_cells.smoothing, inside)) return {};
   if (candidate.kind == DamageKind::depression && !input.image_edges.grey.empty()) {
-    refine_outline_by_image(input.image_edges, input.gaps.unseen, BoxMask(candidate.box()),
+    refine_outline_by_image(input.image_edges, input.gaps.hidden, BoxMask(candidate.box()),
                             window_rows(input, candidate.box()), inside);
   }
   fill_holes(inside.cells(), inside.cells().pixels());

@@ -37,8 +37,7 @@ Damage measure_candidate(const DamageInput& input, const DamageOptions& options,
   const Candidate& candidate = segmentation.candidates[k];
   Damage damage = measure_in_pixels(input, segmentation, k, offset, result);
   if (geometry && damage.pixels > 0) {
-    DamageMetrics metrics =
-        compute_metrics(input, options, *geometry, offset, is_at_side(candidate, segmentation.view), result, damage);
+    DamageMetrics metrics = compute_metrics(input, options, *geometry, offset, result, damage);
     if (result.metric) damage.metrics = std::move(metrics);
   }
   damage.confidence = damage.evidence.confidence();
@@ -58,7 +57,7 @@ bool ends_at_rim(const Candidate& candidate, const Damage& damage) {
   return damage.metrics && !candidate.inside.box().empty();
 }
 
-/// Measure the shape of candidate `k` inside its rim, which is all that `result` keeps of it, and grade it.
+/// Measure the shape of candidate `k` inside its rim, which is all that `result` keeps of it, classify and grade it.
 void finish_metrics(const DamageInput& input, const DamageOptions& options, const Segmentation& segmentation,
                     const FrameGeometry& geometry, std::size_t k, const SurfaceOffset& offset, const DamageMap& result,
                     Damage& damage) {
@@ -67,8 +66,12 @@ void finish_metrics(const DamageInput& input, const DamageOptions& options, cons
     count_pixels(input, result, offset.value, pixel_box(candidate, segmentation.cells), damage);
     if (damage.pixels > 0) keep_inside_rim(input, geometry, offset, result, damage, *damage.metrics);
   }
-  const bool resolvable = damage.evidence.is_depth_resolved() || damage.metrics->mean_depth_m.is_resolved();
-  grade(options.severity, resolvable, *damage.metrics);
+  DamageMetrics& metrics = *damage.metrics;
+  metrics.distress =
+      classify_distress(damage, metrics, options.mount_yaw_deg, possible_wall_slope(metrics, damage.pixels),
+                        is_at_side(candidate, segmentation.view));
+  const bool resolvable = damage.evidence.is_depth_resolved() || metrics.mean_depth_m.is_resolved();
+  grade(options.severity, {resolvable, damage.ends_search}, metrics);
 }
 
 /// Measure all candidates. What lies beyond the rim of one is road to the others: none ends at its rim before all are

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "core/order_statistics.hpp"
-#include "damage/distress.hpp"
 #include "damage/morphology.hpp"
 #include "damage/oriented_box.hpp"
 #include "damage/pixel_runs.hpp"
@@ -26,7 +25,7 @@ struct MetricSums {
   double metres_per_pixel = 0;             ///< weighted by area
   double variance = 0;                     ///< of the disparities, px²
   std::size_t sigma_pixels = 0;            ///< pixels with a standard error
-  std::vector<std::array<double, 2>> rim;  ///< points on the road
+  std::vector<std::array<double, 2>> rim;  ///< corners of its pixels on the road
   double perimeter = 0;                    ///< metres
   double quarter_m2 = 0;                   ///< area deeper than a quarter of the maximum depth
   double three_quarters_m2 = 0;            ///< area deeper than three quarters of it
@@ -85,8 +84,10 @@ MetricSums sum_pixels(const DamageInput& input, const FrameGeometry& geometry, c
       ++sums.sigma_pixels;
     }
     if (!is_on_rim) return;
-    const Point on_road = geometry.axes().to_road(road);
-    if (std::isfinite(on_road[0] + on_road[1])) sums.rim.push_back({on_road[0], on_road[1]});
+    for (const auto& [right, down] : {std::array{-0.5, -0.5}, {0.5, -0.5}, {-0.5, 0.5}, {0.5, 0.5}}) {
+      const auto corner = geometry.road_position(u + right, v + down);
+      if (std::isfinite(corner[0] + corner[1])) sums.rim.push_back(corner);
+    }
     sums.perimeter += std::sqrt(area);
   };
   const auto& [u0, v0, u1, v1] = damage.box_px;
@@ -117,13 +118,6 @@ double wall_slope(const MetricSums& sums, const DamageMetrics& metrics) {
       0.5 * perimeter_per_root_area * (std::sqrt(sums.quarter_m2) + std::sqrt(sums.three_quarters_m2));
   const double run = (sums.quarter_m2 - sums.three_quarters_m2) / mean_perimeter;
   return 0.5 * metrics.max_depth_m.value / std::max(run, std::sqrt(sums.area) * 1e-3);
-}
-
-/// Slope of the steepest wall that the support window, which spreads a vertical one over `window_m` between a quarter
-/// and three quarters of its height, makes as gentle as measured; infinite for a vertical one.
-double possible_wall_slope(const DamageMetrics& metrics, double window_m) {
-  const double rise = 0.5 * metrics.max_depth_m.value, run = rise / metrics.wall_slope;
-  return rise / std::sqrt(std::max(0.0, run * run - window_m * window_m));
 }
 
 /// Corners of the outline on the road.
@@ -209,8 +203,15 @@ SurfaceOffset estimate_surface_offset(const Segmentation& segmentation, const Ca
   return {median, gaussian_mad * upper_median(values) / std::sqrt(effective_samples)};
 }
 
+double possible_wall_slope(const DamageMetrics& metrics, std::size_t pixels) {
+  const double window_m =
+      SmoothingError::window_radius_px * std::sqrt(metrics.area_m2.value / static_cast<double>(pixels));
+  const double rise = 0.5 * metrics.max_depth_m.value, run = rise / metrics.wall_slope;
+  return rise / std::sqrt(std::max(0.0, run * run - window_m * window_m));
+}
+
 DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& options, const FrameGeometry& geometry,
-                              const SurfaceOffset& offset, bool at_side, const DamageMap& maps, Damage& damage) {
+                              const SurfaceOffset& offset, const DamageMap& maps, Damage& damage) {
   const auto [u, v] = damage.deepest_px;
   const double signed_depth = sign_of(damage.kind) * damage.max_depth_px.value;
   const double road_disparity = geometry.road_disparity(u, v, maps.surface(u, v) + offset.value);
@@ -232,13 +233,11 @@ DamageMetrics compute_metrics(const DamageInput& input, const DamageOptions& opt
   metrics.resolvable_depth_m =
       resolvable_change_px(std::hypot(noise_px, offset.std_error), options.threshold_sigma) * metres_per_pixel;
   metrics.wall_slope = wall_slope(sums, metrics);
-  const double pixel_m = std::sqrt(sums.area / static_cast<double>(damage.pixels));
-  const double possible_slope = possible_wall_slope(metrics, SmoothingError::window_radius_px * pixel_m);
+  const double possible_slope = possible_wall_slope(metrics, damage.pixels);
   if (damage.kind == DamageKind::depression && std::isfinite(sums.area)) {  // else it extends beyond the road
     damage.evidence.likely_wall_slope = std::sqrt(std::min(1.0, metrics.wall_slope) * std::min(1.0, possible_slope));
   }
   if (input.calibration) damage.evidence.extent = metrics.diameter_m / (0.5 * straightedge_m);
-  metrics.distress = classify_distress(damage, metrics, options.mount_yaw_deg, possible_slope, at_side);
   return metrics;
 }
 

@@ -65,7 +65,7 @@ void extend_region(const SearchInput& input, SearchImages& images, Candidate& ca
   update_extent(input, images.labels(candidate.box()), candidate);
   if (candidate.size == 0 || candidate.kind == DamageKind::protrusion || input.image_edges.grey.empty()) return;
   const BoxMask other_hollows = hollows_beside(candidate, input.image_edges.window_radius, images);
-  refine_outline_by_image(input.image_edges, input.gaps.unseen, other_hollows, window_rows(input, candidate.box()),
+  refine_outline_by_image(input.image_edges, input.gaps.hidden, other_hollows, window_rows(input, candidate.box()),
                           candidate.cells);
   fill_holes(candidate.cells.cells(), max_hole);
   update_extent(input, images.labels(candidate.box()), candidate);

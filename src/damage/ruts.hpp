@@ -3,8 +3,12 @@
 #include <vector>
 
 #include "damage/road_surface.hpp"
+#include "roadstereo/damage.hpp"
 
 namespace roadstereo {
+
+/// Least depth of a rut below its straightedge, standard errors.
+inline constexpr double min_rut_sigmas = 14;
 
 /// Ruts: strips along the road, in one direction up to 30° from that of travel, that lie below a straightedge across
 /// it.
@@ -18,6 +22,11 @@ struct Ruts {
   /// Set the cells of all ruts.
   void fill(std::uint8_t value, Image<std::uint8_t>& mask) const;
 };
+
+/// Whether a region lies in a rut: as surely as half of it would in the shallowest one.
+inline bool lies_in_rut(const DamageEvidence& evidence) {
+  return evidence.rut_significance >= 0.5 * min_rut_sigmas;
+}
 
 /// Find ruts; none without metric coordinates. Ruts continue along the road, and a pair of wheel tracks covers half of
 /// a lane, so that a robust fit does not treat them as outliers: the surface of the road must be fitted without them.

@@ -49,7 +49,7 @@ bool is_deep(const ConnectedComponent& gap, bool cut, const DepthCells& cells, c
 
 ViewGaps classify_gaps(const DepthCells& cells, const CommonView& view, const Thresholds& thresholds) {
   const int width = cells.valid.width(), height = cells.valid.height();
-  ViewGaps gaps{known_cells(cells.valid, view), {width, height, 0}, {width, height, 0}};
+  ViewGaps gaps{known_cells(cells.valid, view), {width, height, 0}, {width, height, 0}, {}};
   for (const ConnectedComponent& gap : ConnectedComponents(gaps.known, ConnectedComponents::Foreground::zero)) {
     const bool cut = is_cut(gap, view);
     if (is_deep(gap, cut, cells, thresholds)) {
@@ -58,6 +58,8 @@ ViewGaps classify_gaps(const DepthCells& cells, const CommonView& view, const Th
       fill_component(gap, 255, gaps.unseen);
     }
   }
+  gaps.hidden = gaps.unseen;
+  view.fill_masked(gaps.hidden);
   return gaps;
 }
 

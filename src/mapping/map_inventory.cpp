@@ -206,7 +206,8 @@ RoadDamageRecord record_of(const FindingGroup& group, const RoadMap& map, const 
   fused.area_m2 = record.area_m2;
   fused.diameter_m = 2 * std::sqrt(record.area_m2.value / std::numbers::pi);
   const bool resolvable = is_depth_resolved(group, fused.max_depth_m) || fused.mean_depth_m.is_resolved();
-  grade(options.severity, resolvable, fused);
+  const bool at_least = std::ranges::all_of(seen, [](const Damage* damage) { return damage->ends_search; });
+  grade(options.severity, {resolvable, at_least && !seen.empty()}, fused);
   if (is_withheld(seen, options.severity)) return record;
   record.severity_probabilities = fused.severity_probabilities;
   record.severity = fused.severity;

@@ -64,6 +64,11 @@ TEST(CommonView, EndsAtMask) {
   view.fill_outside(known);
   EXPECT_EQ(known(100, 30), 255);
   EXPECT_EQ(known(101, 30), 0);
+  Image<std::uint8_t> hidden(scene.cells.width(), scene.cells.height(), 0);
+  view.fill_masked(hidden);
+  EXPECT_EQ(hidden(100, 30), 255);
+  EXPECT_EQ(hidden(101, 30), 0);
+  EXPECT_EQ(hidden(0, 30), 0) << "outside, but the left picture shows it";
 }
 
 TEST(CommonView, IsWholeImageWithoutPlaneOrRightImage) {

@@ -39,13 +39,13 @@ Image<std::int16_t> square_on_road(const Tones& tones) {
 }
 
 /// Share of the cells of the strip that join the square, of those whose 3×3 mean is the strip's level.
-double joined(const Image<std::int16_t>& grey, const Image<std::uint8_t>& unseen = Image<std::uint8_t>(side, side, 0),
+double joined(const Image<std::int16_t>& grey, const Image<std::uint8_t>& hidden = Image<std::uint8_t>(side, side, 0),
               const BoxMask& other_hollows = {}) {
   BoxMask region(CellBox{first, first, last, last});
   for (int j = first; j <= last; ++j) {
     for (int i = first; i <= last; ++i) region.set(i, j);
   }
-  refine_outline_by_image({grey, 1, radius}, unseen, other_hollows, radius, region);
+  refine_outline_by_image({grey, 1, radius}, hidden, other_hollows, radius, region);
   int count = 0, all = 0;
   for (int j = first + 1; j < last; ++j) {
     for (int i = last + 2; i < last + strip_columns; ++i) {
@@ -118,13 +118,13 @@ TEST(ImageOutline, GrowsFewerRowsWhereRoadIsForeshortened) {
       grey(u, v) = static_cast<std::int16_t>((is_dark ? 400 : 1600) + (u * 7 + v * 5) % 8);
     }
   }
-  const Image<std::uint8_t> unseen(side, side, 0);
+  const Image<std::uint8_t> hidden(side, side, 0);
   for (const int rows : {1, 2, radius}) {
     BoxMask region(CellBox{first, first, last, last});
     for (int j = first; j <= last; ++j) {
       for (int i = first; i <= last; ++i) region.set(i, j);
     }
-    refine_outline_by_image({grey, 1, radius}, unseen, BoxMask(), rows, region);
+    refine_outline_by_image({grey, 1, radius}, hidden, BoxMask(), rows, region);
     EXPECT_TRUE(region(middle, last + rows) && region(middle, first - rows)) << rows;
     EXPECT_FALSE(region(middle, last + rows + 1) || region(middle, first - rows - 1)) << rows;
     EXPECT_TRUE(region(last + radius, middle) && region(first - radius, middle)) << rows;

@@ -78,28 +78,42 @@ DamageMetrics pothole(double depth_m, double depth_error_m, double area_m2, doub
 /// 46 mm ± 9 mm, 300 mm wide: Φ((50 − 46) / 9) − Φ((25 − 46) / 9) = 0.671639 − 0.009815 are medium, the rest high.
 TEST(Grade, NeedsMajorityAndKnownSize) {
   DamageMetrics metrics = pothole(0.046, 0.009, 0.07, 0.001);
-  grade(astm_d6433(), true, metrics);
+  grade(astm_d6433(), {true}, metrics);
   EXPECT_EQ(metrics.severity, Severity::medium);
   EXPECT_NEAR(metrics.severity_probabilities.medium, 0.671639 - 0.009815 + 0.328361, 1e-3) << ">50 mm is medium, too";
   EXPECT_EQ(severity_text(metrics), "medium");
   metrics = pothole(0.046, 0.009, 0.07, 0.07 * 0.98);
-  grade(astm_d6433(), true, metrics);
+  grade(astm_d6433(), {true}, metrics);
   EXPECT_EQ(metrics.severity, Severity::uncertain) << "an area known to ±98 %";
   EXPECT_EQ(severity_text(metrics), "not graded");
   metrics = pothole(0.128, 0.144, 0.07, 0.001);
-  grade(astm_d6433(), true, metrics);
+  grade(astm_d6433(), {true}, metrics);
   EXPECT_EQ(severity_text(metrics), "not graded") << "a depth known to ±112 %";
   EXPECT_EQ(metrics.unit, DistressUnit::count);
   EXPECT_EQ(metrics.quantity, 1);
-  grade(astm_d6433(), false, metrics);
+  grade(astm_d6433(), {false}, metrics);
   EXPECT_EQ(metrics.severity, Severity::unresolvable);
+}
+
+/// Potholes 300 mm wide are low from 13 mm, medium from 25 mm on.
+TEST(Grade, LowerBoundHasTheSeverityOfAllThatIsDeeper) {
+  DamageMetrics metrics = pothole(0.02, 0.02, 0.07, 0.001);
+  grade(astm_d6433(), {true, true}, metrics);
+  EXPECT_EQ(metrics.severity, Severity::uncertain) << "low, but medium if it is deeper than 25 mm";
+  metrics = pothole(0.1, 0.1, 0.07, 0.001);
+  grade(astm_d6433(), {true, true}, metrics);
+  EXPECT_EQ(metrics.severity, Severity::medium);
+  EXPECT_EQ(severity_text(metrics), "medium");
+  metrics.area_m2.std_error = 0.07 * 0.98;
+  grade(astm_d6433(), {true, true}, metrics);
+  EXPECT_EQ(metrics.severity, Severity::uncertain) << "an area known to ±98 %";
 }
 
 TEST(Grade, DistressWithoutClassesIsNotGraded) {
   DamageMetrics bump = pothole(0.04, 0.001, 0.2, 0.01);
   bump.distress = Distress::bump;
   bump.length_m = 0.7;
-  grade(astm_d6433(), true, bump);
+  grade(astm_d6433(), {true}, bump);
   EXPECT_EQ(bump.severity, Severity::unknown);
   EXPECT_EQ(bump.quantity, 0.7);
   EXPECT_EQ(severity_text(bump), "not graded");
@@ -110,7 +124,7 @@ TEST(Grade, RutsByMeanDepth) {
   DamageMetrics rut = pothole(0.016, 0.0001, 0.8, 0.01);
   rut.distress = Distress::rut;
   rut.mean_depth_m = {0.02 / 3, 0.0001};
-  grade(astm_d6433(), true, rut);
+  grade(astm_d6433(), {true}, rut);
   EXPECT_EQ(rut.severity, Severity::low);
   EXPECT_EQ(rut.quantity, 0.8);
 }
