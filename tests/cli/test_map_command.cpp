@@ -174,7 +174,7 @@ TEST_F(MapCommand, RunIsMappedWithItsOwnOptions) {
   expect_complaint(run("map run --rate 5 --output map"), "--rate is for recordings");
   expect_complaint(run("map run run --output map"), "those of their first cameras");
   expect_complaint(run("map run flight --output map"), "not both");
-  expect_complaint(run("map run --output run"), "this folder has the results of inspect");
+  expect_complaint(run("map run --output run"), "this folder has the results of a recording");
   std::string summary = read_text(folder_ / "run/summary.json");
   const std::string no_crs = "\"crs\": null";
   summary.replace(summary.find(no_crs), no_crs.size(), "\"crs\": \"EPSG:32660\"");
@@ -244,9 +244,12 @@ TEST_F(MapResume, InterruptedMapIsContinuedBitForBit) {
   std::filesystem::copy(folder_ / "killed", folder_ / "broken", std::filesystem::copy_options::recursive);
   write("broken/.tiles/0/" + tile.filename().string(), std::string("x"));
   expect_complaint(run(command_ + "broken --resume"), "this tile has 1 bytes");
+  std::filesystem::create_directories(folder_ / "killed/.tiles/rasters");
+  write("killed/.tiles/rasters/points.las", std::string("half"));  // of a run with --las
   const Outcome resumed = run(command_ + "killed --resume");
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
   expect_whole("killed");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "killed/points.las"));
   expect_complaint(run(command_ + "full", "trap '' XFSZ; ulimit -f 1000;"), 1, "cannot be written: File too large");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "full/map.json"));
   ASSERT_EQ(run(command_ + "full --resume").exit_code, 0);

@@ -4,15 +4,18 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
+#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
-#include "flight/flight_folder.hpp"
+#include "folder_lock.hpp"
 #include "io/geo/map_crs.hpp"
 #include "map/build_map.hpp"
 #include "map/map_files.hpp"
 #include "map/map_results.hpp"
+#include "map/map_values.hpp"
+#include "output_owner.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/output_folder.hpp"
 
@@ -29,13 +32,13 @@ BuiltMap built_map(const MapPlan& plan, const std::filesystem::path& tiles, cons
     return true;
   });
   if (!built.days.empty()) return built;
+  std::error_code ignored;
+  std::filesystem::remove_all(tiles, ignored);
   if (had_days) {
     fail(
         "the map is empty: no frame shows the road sharply enough for a cell. Are the poses in metres, with z up, and ",
         "the cells of --cell not larger than what frames show? ", fmt::format("{}", fmt::join(built.reasons, "; ")));
   }
-  std::error_code ignored;
-  std::filesystem::remove_all(tiles, ignored);
   fail("none of the ", built.frames, " frames with a pose has a road",
        fmt::format("{}{}", built.reasons.empty() ? "" : ": ", fmt::join(built.reasons, "; ")));
 }
@@ -43,10 +46,9 @@ BuiltMap built_map(const MapPlan& plan, const std::filesystem::path& tiles, cons
 }  // namespace
 
 MapSummary make_map(const MapPlan& plan, const StopSignals& stop) {
-  if (is_flight_folder(plan.output) || is_pair_folder(plan.output)) {
-    fail(plan.output.string(), ": this folder has the results of inspect; choose another one for a map");
-  }
+  require_no_other_owner(plan.output, OutputOwner::map);
   io::OutputFolder folder(plan.output);  // fails early
+  const FolderLock lock(folder.path(), folder.path() / ".lock");
   if (!plan.crs.empty()) static_cast<void>(io::map_wkt({.crs = plan.crs}));
   for (const MapPass& pass : plan.passes) {
     for (const auto& inputs : {pass.source, pass.calibration, std::vector{pass.trajectory}}) {
@@ -59,20 +61,24 @@ MapSummary make_map(const MapPlan& plan, const StopSignals& stop) {
   MapSummary summary;
   summary.json = map_json(plan, built, results);
   summary.text = map_text(plan, built, results);
-  summary.picture = overview_of(plan, built, results.damages);
+  summary.picture = overview_of(plan, built, results.damages, stop);
   const std::filesystem::path drafts = tiles / "rasters";
   std::filesystem::create_directories(drafts);
-  write_rasters(plan, built, drafts);
+  const std::vector<std::string> rasters = write_rasters(plan, built, drafts, stop);
   add_map_tables(built, results, folder);
   folder.add("map.jpg", summary.picture);
   folder.add("map.json", summary.json);
-  for (const auto& raster : std::filesystem::directory_iterator(drafts)) {
-    folder.add_file(raster.path().filename().string(), raster.path());
+  for (const std::string& name : rasters) folder.add_file(name, drafts / name);
+  for (const char* name : {points_file, las_file}) {
+    if (!folder.has(name)) folder.remove(name);
   }
   folder.commit();
   std::error_code ignored;
   std::filesystem::remove_all(tiles, ignored);
-  for (RoadDamageRecord& damage : results.damages) damage.best.footprint.clear();
+  for (RoadDamageRecord& damage : results.damages) {
+    damage.best.footprint.clear();
+    damage.best.at_m = in_crs(built, damage.best.at_m);
+  }
   summary.damages = std::move(results.damages);
   return summary;
 }

@@ -15,7 +15,7 @@ struct MapSummary {
   std::string json;                       ///< map.json
   std::string text;                       ///< for the terminal
   std::vector<std::uint8_t> picture;      ///< `io::map_picture`
-  std::vector<RoadDamageRecord> damages;  ///< without their footprints
+  std::vector<RoadDamageRecord> damages;  ///< at the places of damages.csv, without their footprints
 };
 
 /// Makes a map and writes its files to `plan.output`. Throws Error if no frame with a pose has a road, Interrupted
