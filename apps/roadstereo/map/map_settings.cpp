@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "flight/flight_folder.hpp"
 #include "map/run_folder.hpp"
+#include "output_owner.hpp"
 #include "roadstereo/error.hpp"
 
 namespace roadstereo::cli {
@@ -35,17 +35,28 @@ void require_own_crs(const std::string& folder, const MapPass& run, const std::s
   fail(folder, ": the poses of this run are in ", run.crs, "; --crs is ", crs);
 }
 
+/// The system that the poses of all runs are in; empty if they are in none. Throws Error if they differ.
+std::string common_crs(const std::vector<std::string>& folders, const std::vector<MapPass>& runs) {
+  for (std::size_t k = 1; k < runs.size(); ++k) {
+    if (runs[k].crs == runs[0].crs) continue;
+    const auto text = [](const std::string& crs) { return crs.empty() ? "that of its first camera" : crs; };
+    fail("the poses of the runs are in different systems: ", folders[0], " in ", text(runs[0].crs), ", ", folders[k],
+         " in ", text(runs[k].crs), "; give each run a --trajectory FILE, all in one world");
+  }
+  if (runs.size() > 1 && runs[0].crs.empty()) {
+    fail("the worlds of ", runs.size(),
+         " runs are those of their first cameras, not one; give each run "
+         "a --trajectory FILE, all in one world, or --crs if theirs are in that system");
+  }
+  return runs[0].crs;
+}
+
 std::vector<MapPass> runs_of(const MapSettings& settings) {
   reject_run_options(settings);
   const std::vector<std::string>& trajectory = settings.trajectory;
   if (!trajectory.empty() && trajectory.size() != settings.source.size()) {
     fail("map has ", settings.source.size(), " runs and ", trajectory.size(),
          " trajectories; either each run has another --trajectory FILE than its own or none");
-  }
-  if (settings.source.size() > 1 && trajectory.empty() && settings.crs.empty()) {
-    fail("the worlds of ", settings.source.size(),
-         " runs are those of their first cameras, not one; give each run "
-         "a --trajectory FILE, all in one world, or --crs if theirs are in that system");
   }
   const PipelineOptions options = make_options(settings.processing);
   std::vector<MapPass> passes;
@@ -104,12 +115,13 @@ MapPlan MapSettings::plan() const {
   validate();
   const MapOptions& options = *this;
   MapPlan plan{options, {}, output};
-  const auto runs = static_cast<std::size_t>(
-      std::count_if(source.begin(), source.end(), [](const std::string& name) { return is_flight_folder(name); }));
+  const auto runs = static_cast<std::size_t>(std::count_if(
+      source.begin(), source.end(), [](const std::string& name) { return owner_of(name) == OutputOwner::recording; }));
   if (runs != 0 && runs != source.size()) {
     fail("map takes either recordings or outputs of inspect, not both: ", runs, " of ", source.size(), " are outputs");
   }
   plan.passes = runs > 0 ? runs_of(*this) : recordings_of(*this);
+  if (runs > 0 && trajectory.empty() && crs.empty()) plan.crs = common_crs(source, plan.passes);
   if (!day.empty() && day.size() != plan.passes.size()) {
     fail("map has ", plan.passes.size(), " recordings and ", day.size(),
          " days; either each has one --day NAME or none");
