@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "flight/flight_folder.hpp"
 #include "map_source.hpp"
+#include "output_owner.hpp"
 #include "processing_options.hpp"
 #include "report_head.hpp"
 #include "roadstereo/error.hpp"
@@ -68,9 +68,7 @@ DamageMap find_in(const TransformedMap& map, double white_level, const DamageArg
 void run(const DamageArguments& arguments) {
   make_options(arguments.settings, arguments.severity);  // checked first
   const TransformedMap map = read_transformed_map(arguments.files, arguments.threads);
-  if (is_pair_folder(arguments.output) || is_flight_folder(arguments.output)) {
-    fail(arguments.output, ": this folder has the results of inspect; choose another one");
-  }
+  require_no_other_owner(arguments.output, OutputOwner::none);
   io::OutputFolder folder(arguments.output);
   const MapFiles& files = arguments.files;
   for (const auto& inputs : {std::vector{files.transformed, files.image, files.disparity}, files.calibration}) {

@@ -9,10 +9,10 @@
 #include "commands.hpp"
 #include "core/parallel.hpp"
 #include "find_damage_or_warn.hpp"
-#include "flight/flight_folder.hpp"
 #include "given_disparity.hpp"
 #include "inspect_flight.hpp"
 #include "inspection.hpp"
+#include "output_owner.hpp"
 #include "result_files.hpp"
 #include "result_json.hpp"
 #include "roadstereo/error.hpp"
@@ -122,9 +122,7 @@ PairFiles pair_files(const FlightSettings& settings) {
 
 void inspect_pair(const FlightSettings& settings) {
   reject_flight_options(settings);
-  if (is_flight_folder(settings.output)) {
-    fail(settings.output, ": this folder has the results of a recording; choose another one for a pair");
-  }
+  require_no_other_owner(settings.output, OutputOwner::pair);
   const bool wants_cloud = std::find(settings.write.begin(), settings.write.end(), "cloud") != settings.write.end();
   Inspection inspection;
   inspection.options = make_options(settings);

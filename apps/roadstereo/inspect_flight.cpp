@@ -8,11 +8,13 @@
 
 #include "auto_mask.hpp"
 #include "core/parallel.hpp"
+#include "flight/flight_record.hpp"
 #include "flight/flight_results.hpp"
-#include "flight/provenance.hpp"
 #include "flight/run_flight.hpp"
 #include "map/make_map.hpp"
+#include "map/map_files.hpp"
 #include "mask_file.hpp"
+#include "output_owner.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/version.hpp"
 
@@ -25,24 +27,6 @@ std::optional<std::int64_t> frames_to_do(const FlightSettings& settings, const i
   if (!size) return std::nullopt;
   const std::int64_t last = settings.to ? std::min(*settings.to, *size - 1) : *size - 1;
   return last < settings.from ? 0 : (last - settings.from) / settings.every + 1;
-}
-
-io::FlightJournal open_journal(const FlightSettings& settings, const PipelineOptions& options, FlightFolder& folder) {
-  const io::Provenance made_with = provenance(settings, options);
-  if (settings.resume && std::filesystem::exists(folder.journal())) {
-    return io::FlightJournal::resume(folder.journal(), made_with);
-  }
-  folder.remove_earlier_flight();
-  return io::FlightJournal::begin(folder.journal(), made_with);
-}
-
-std::optional<io::McapWriter> open_mcap(const FlightPlan& plan, const FlightSettings& settings,
-                                        const RectifiedSource& source, const FlightResults& results,
-                                        const FlightFolder& folder) {
-  if (!plan.mcap) return std::nullopt;
-  const auto topics = io::flight_topics(!source.calibration_format().empty(), settings.trajectory);
-  if (results.summary().frames == 0) return io::McapWriter::begin(folder.mcap(), topics);
-  return io::McapWriter::resume(folder.mcap(), topics, results.summary().good);
 }
 
 std::string flight_text(const FlightRun& run, const FlightSummary& summary, const FlightFolder& folder) {
@@ -157,25 +141,20 @@ void inspect_flight(FlightSettings settings) {
   if (!plan.find_white_level) source.ignore_white_level();
   require_calibration(plan, settings.trajectory, source);
   require_frames(settings, source.source());
-  if (is_pair_folder(settings.output)) {
-    fail(settings.output, ": this folder has the results of a pair; choose another one for a recording");
-  }
+  require_no_other_owner(settings.output, OutputOwner::recording);
   FlightFolder folder(settings.output);
   for (const std::string& input : input_files(settings)) folder.protect(input);
-  io::FlightJournal journal = open_journal(settings, run.options, folder);
-  journal.for_each([&](const io::FlightFrame& frame) { results.add(frame); });
-  run.resumed_at = journal.frames();
-  if (const auto done = journal.last(); settings.to && done && done->index > *settings.to) {
+  FlightRecord record(settings, plan, !source.calibration_format().empty(), folder);
+  record.for_each([&](const io::FlightFrame& frame) { results.add(frame); });
+  run.resumed_at = record.frames();
+  if (const auto done = record.last(); settings.to && done && done->index > *settings.to) {
     fail(settings.output, ": frames up to ", done->index, " are finished; --to is ", *settings.to);
   }
-  if (run.resumed_at > 0 && settings.track.file.empty()) folder.remove_track_files();
-  if (run.resumed_at > 0 && !settings.trajectory) folder.remove_trajectory_files();
-
-  std::optional<io::McapWriter> mcap = open_mcap(plan, settings, source, results, folder);
-  Progress progress(frames_to_do(settings, source.source()), journal.frames(), settings.quiet);
+  record.resume_mcap(results.summary().good);
+  Progress progress(frames_to_do(settings, source.source()), record.frames(), settings.quiet);
   auto stop = std::make_unique<StopSignals>();  // until here Ctrl-C ends the program
   std::optional<FlightTrajectory> trajectory;
-  Flight flight{source, folder, journal, results, trajectory, mcap, plan, progress, *stop};
+  Flight flight{source, folder, record, results, trajectory, plan, progress, *stop};
   run.complete = run_flight(settings, flight);
   run.seconds = progress.seconds();
   run.frames_per_second = progress.frames_per_second();
@@ -190,7 +169,7 @@ void inspect_flight(FlightSettings settings) {
   if (settings.map && trajectory && run.complete)
     map_text = add_map(settings, plan, folder, results.summary().static_mask, trajectory->crs(), *stop, run);
   stop.reset();  // the next Ctrl-C ends the program
-  if (journal.last() && journal.last()->white_level > 0) run.options.white_level = journal.last()->white_level;
+  if (const auto last = record.last(); last && last->white_level > 0) run.options.white_level = last->white_level;
   if (trajectory) {
     run.crs = trajectory->crs();
     run.places = trajectory->places();
@@ -201,8 +180,12 @@ void inspect_flight(FlightSettings settings) {
   run.engine = resolve_engine_name(run.options.engine);
   run.threads = resolve_threads(run.options.threads);
 
-  if (mcap) mcap->finish();
+  record.finish();
   const std::string json = results.write(settings, run, folder);
+  if (run.resumed_at > 0) {
+    folder.remove_unwritten();
+    if (!run.map) remove_map(folder.path() / "map");
+  }
   const FlightSummary& summary = results.summary();
   if (settings.json) fmt::print("{}", json);
   if (!settings.json && !settings.quiet) {

@@ -204,6 +204,22 @@ TEST_F(TrackOfBend, PlacesTrajectoryOnTheEarthUnlessMirrored) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "other/trajectory_kitti.txt"));  // without the track
 }
 
+TEST_F(TrackOfBend, ReportHasPlacesOfMap) {
+  if (!has_pose_graph()) GTEST_SKIP() << "a build without Ceres";
+  write("track.csv", track(1));
+  const Outcome outcome = run("inspect flight --map --track track.csv --track-offset 2.5 --output out --quiet");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json map = json_file("out/map/map.json");
+  ASSERT_GE(map["damages"].size(), 1U);
+  EXPECT_EQ(map["crs"], "EPSG:32632");
+  const std::string report = read_text(folder_ / "out/report.html");
+  for (const char* axis : {"x_m", "y_m"}) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.2f", map["damages"][0][axis].get<double>());
+    EXPECT_NE(report.find(text), std::string::npos) << text;
+  }
+}
+
 // UTM ends at 84°: there are no poses in it, but all else.
 TEST_F(TrackOfBend, FailureOfPoseGraphLeavesInspection) {
   if (!has_pose_graph()) GTEST_SKIP() << "a build without Ceres";

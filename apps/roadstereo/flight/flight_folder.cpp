@@ -1,13 +1,9 @@
 #include "flight/flight_folder.hpp"
 
-#include <fcntl.h>
 #include <fmt/core.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -32,29 +28,20 @@ std::int64_t thumbnail_step(std::int64_t sequence) {
   return step;
 }
 
-int lock_folder(const fs::path& folder) {
-  constexpr mode_t readable = 0644;
-  const fs::path file = folder / "lock";
-  const int descriptor = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, readable);
-  if (descriptor < 0) {
-    fail("cannot write to folder ", folder.string(), ": ", std::generic_category().message(errno));
-  }
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
-  const int error = errno;
-  ::close(descriptor);
-  if (error == EWOULDBLOCK) fail(folder.parent_path().string(), ": another process is writing to this folder");
-  fail<SystemError>("cannot lock ", file.string(), ": ", std::generic_category().message(error));
-}
-
-/// What a flight writes besides the files of its frames, its track and its trajectory.
+/// What a flight writes besides the files of its frames and `optional_files`.
 constexpr std::array flight_files = {
-    "frames.csv",   "pose.csv",    "damages.csv",       "candidates.csv",  "sightings.csv",
-    "summary.json", "report.html", static_mask_file,    "rig_bias.json",   "flight.mcap",
-    "damages",      "map",         "flight/thumbnails", "flight/sections", "flight/journal.jsonl"};
+    "frames.csv",   "pose.csv",          "damages.csv",     "candidates.csv",      "sightings.csv",
+    "summary.json", "report.html",       static_mask_file,  "flight.mcap",         "damages",
+    "map",          "flight/thumbnails", "flight/sections", "flight/journal.jsonl"};
 
-/// What is written with --track.
-constexpr std::array track_files = {"segments.csv",      "frames.geojson",     "footprints.geojson", "damages.geojson",
-                                    "sightings.geojson", "candidates.geojson", "flight.gpkg"};
+/// What the end of a run writes or not: with --track and --trajectory, and where the rig has a bias.
+std::vector<std::string> optional_files() {
+  std::vector<std::string> names{"segments.csv",      "frames.geojson",     "footprints.geojson", "damages.geojson",
+                                 "sightings.geojson", "candidates.geojson", "flight.gpkg",        "rig_bias.json"};
+  const std::vector<std::string>& trajectory = trajectory_file_names();
+  names.insert(names.end(), trajectory.begin(), trajectory.end());
+  return names;
+}
 
 }  // namespace
 
@@ -63,11 +50,7 @@ FlightFolder::FlightFolder(const fs::path& folder) : files_(folder) {
   std::error_code error;
   fs::create_directories(own, error);
   if (error) fail("cannot write to folder ", own.string(), ": ", error.message());
-  lock_ = lock_folder(own);
-}
-
-FlightFolder::~FlightFolder() {
-  if (lock_ >= 0) ::close(lock_);
+  lock_.emplace(folder, own / "lock");
 }
 
 fs::path FlightFolder::journal() const {
@@ -76,14 +59,15 @@ fs::path FlightFolder::journal() const {
 
 void FlightFolder::protect(const fs::path& input) {
   std::error_code absent;
-  const auto require_other = [&](const char* name) {
+  const auto require_other = [&](const fs::path& name) {
     const fs::path below = fs::relative(input, path() / name, absent);  // of a folder that is removed
     const bool is_removed = !below.empty() && *below.begin() != "..";
     if (!is_removed && !fs::equivalent(path() / name, input, absent)) return;
     fail(input.string(), ": this input would be overwritten; choose another output folder");
   };
   std::for_each(flight_files.begin(), flight_files.end(), require_other);
-  std::for_each(track_files.begin(), track_files.end(), require_other);
+  const std::vector<std::string> optional = optional_files();
+  std::for_each(optional.begin(), optional.end(), require_other);
   files_.protect(input);
 }
 
@@ -99,39 +83,26 @@ void FlightFolder::remove_earlier_flight() {
   for (const char* name : flight_files) {
     fs::remove_all(path() / name, ignored);
   }
-  remove_track_files();
-  remove_trajectory_files();
+  for (const std::string& name : optional_files()) fs::remove(path() / name, ignored);
 }
 
-void FlightFolder::remove_track_files() {
+void FlightFolder::remove_unwritten() {
   std::error_code ignored;
-  for (const char* name : track_files) fs::remove(path() / name, ignored);
-}
-
-void FlightFolder::remove_trajectory_files() {
-  std::error_code ignored;
-  for (const std::string& name : trajectory_file_names()) fs::remove(path() / name, ignored);
+  for (const std::string& name : optional_files()) {
+    if (written_.count(name) == 0) fs::remove(path() / name, ignored);
+  }
 }
 
 void FlightFolder::write(const std::vector<StagedFile>& files) {
   if (files.empty()) return;
   for (const StagedFile& file : files) files_.add(file.name, file.bytes);
   files_.commit();
+  for (const StagedFile& file : files) written_.insert(file.name);
 }
 
 std::vector<std::uint8_t> FlightFolder::read(const std::string& name) const {
   std::ifstream file(path() / name, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-bool is_flight_folder(const fs::path& folder) {
-  std::error_code absent;
-  return fs::exists(folder / "flight" / "journal.jsonl", absent);
-}
-
-bool is_pair_folder(const fs::path& folder) {
-  std::error_code absent;
-  return fs::exists(folder / "result.json", absent);
 }
 
 std::optional<std::string> thumbnail_name(std::int64_t sequence) {

@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "flight/flight_job.hpp"
+#include "folder_lock.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
 #include "roadstereo/io/output_folder.hpp"
 
@@ -17,9 +19,6 @@ class FlightFolder {
  public:
   /// Creates and locks the folder. Throws Error if another process holds the lock.
   explicit FlightFolder(const std::filesystem::path& folder);
-  FlightFolder(const FlightFolder&) = delete;
-  FlightFolder& operator=(const FlightFolder&) = delete;
-  ~FlightFolder();
 
   std::filesystem::path journal() const;
   std::filesystem::path mcap() const { return path() / "flight.mcap"; }
@@ -31,9 +30,8 @@ class FlightFolder {
   /// Removes the files of an earlier flight.
   void remove_earlier_flight();
 
-  /// Removes the files of an earlier run of this flight that a run without a track, or trajectory, does not write.
-  void remove_track_files();
-  void remove_trajectory_files();
+  /// Removes the tables, GIS files and trajectories of an earlier run of this flight that this one has not written.
+  void remove_unwritten();
 
   /// Writes files atomically.
   void write(const std::vector<StagedFile>& files);
@@ -42,15 +40,10 @@ class FlightFolder {
   std::vector<std::uint8_t> read(const std::string& name) const;
 
  private:
-  int lock_ = -1;
+  std::optional<FolderLock> lock_;
   io::OutputFolder files_;
+  std::set<std::string> written_;
 };
-
-/// Returns whether the folder has the results of a flight, finished or not.
-bool is_flight_folder(const std::filesystem::path& folder);
-
-/// Returns whether the folder has the results of a pair.
-bool is_pair_folder(const std::filesystem::path& folder);
 
 /// Returns the file name of a frame's thumbnail, or nullopt if the frame has none. A flight of any length has 17 to 32
 /// evenly spaced thumbnails.

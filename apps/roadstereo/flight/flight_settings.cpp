@@ -64,6 +64,11 @@ void FlightSettings::validate() const {
   if (!(track.offset_sd_s >= min_sd_s && track.offset_sd_s <= max_sd_s)) {
     fail("--track-offset-sd is ", track.offset_sd_s, "; it must be between ", min_sd_s, " and ", max_sd_s, " s");
   }
+  constexpr double max_yaw_deg = 360;
+  if (!(std::abs(track.mount_yaw_deg) <= max_yaw_deg)) {
+    fail("--mount-yaw is ", track.mount_yaw_deg, "; it must be between ", -max_yaw_deg, " and ", max_yaw_deg,
+         " degrees");
+  }
   constexpr std::int64_t max_every = 1'000'000'000;
   if (every < 1 || every > max_every) fail("--every is ", every, "; it must be between 1 and ", max_every);
 }

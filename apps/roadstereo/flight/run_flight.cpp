@@ -80,7 +80,7 @@ int finisher_count(const PipelineOptions& options) {
 
 /// A trajectory needs the frames of an earlier run again, and so does a static mask until it is known.
 bool needs_frames_again(const FlightSettings& settings, const Flight& flight) {
-  const std::optional<io::FlightFrame>& last = flight.journal.last();
+  const std::optional<io::FlightFrame> last = flight.record.last();
   return settings.trajectory || (flight.plan.auto_mask && last && !last->static_mask.judged);
 }
 
@@ -89,12 +89,12 @@ FlightPipeline::FlightPipeline(const FlightSettings& settings, Flight& flight)
       flight_(flight),
       finishers_(finisher_count(flight.plan.options)),
       from_first_(needs_frames_again(settings, flight)),
-      last_(flight.journal.last()),
+      last_(flight.record.last()),
       motion_(settings, flight, last_),
       pairs_(3),
       matched_(static_cast<std::size_t>(finishers_)),
       free_(static_cast<std::size_t>(2 * finishers_) + 1),
-      sequencer_(flight.journal.frames()) {
+      sequencer_(flight.record.frames()) {
   for (int i = 0; i < 2 * finishers_ + 1; ++i) free_.put(std::make_unique<FlightJob>());
 }
 
@@ -161,7 +161,7 @@ void FlightPipeline::match() {
   std::optional<Pipeline> pipeline;
   PairWatch watch;
   AutoMask auto_mask = make_mask();
-  const std::int64_t done = flight_.journal.frames();
+  const std::int64_t done = flight_.record.frames();
   std::int64_t sequence = from_first_ ? 0 : done;  // a trajectory begins anew, with the same results
   while (std::optional<io::SourcePair> pair = pairs_.take()) {
     std::optional<JobPointer> job = free_.take();
@@ -241,10 +241,10 @@ void FlightPipeline::finish() {
 
 /// Writes the files before the journal entry, so that the files of all journal entries are complete.
 void FlightPipeline::commit_frame(FlightJob& job) {
+  flight_.record.begin();
   add_pictures(job, flight_.results.add(job.frame));
   flight_.folder.write(job.files);
-  if (!job.mcap_chunk.empty()) flight_.mcap->append(job.mcap_chunk);
-  flight_.journal.append(job.frame);
+  flight_.record.append(job.frame, job.mcap_chunk);
   flight_.progress.frame_done(job.frame.status == io::FrameStatus::good);
 }
 
@@ -281,6 +281,7 @@ bool FlightPipeline::run() {
   run_stage([this] { match(); });
   for (std::thread& thread : threads) thread.join();
   failure_.rethrow();
+  flight_.record.begin();  // of a source without frames
   return reached_end_;
 }
 

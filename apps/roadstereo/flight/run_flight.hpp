@@ -4,13 +4,12 @@
 #include <optional>
 
 #include "flight/flight_folder.hpp"
+#include "flight/flight_record.hpp"
 #include "flight/flight_results.hpp"
 #include "flight/flight_settings.hpp"
 #include "flight/flight_trajectory.hpp"
 #include "flight/rectified_source.hpp"
-#include "io/ros/mcap_writer.hpp"
 #include "progress.hpp"
-#include "roadstereo/io/flight_journal.hpp"
 #include "stop_signals.hpp"
 
 namespace roadstereo::cli {
@@ -19,16 +18,15 @@ namespace roadstereo::cli {
 struct Flight {
   RectifiedSource& source;
   FlightFolder& folder;
-  io::FlightJournal& journal;
-  FlightResults& results;                       ///< of the frames in the journal
+  FlightRecord& record;
+  FlightResults& results;                       ///< of the frames on record
   std::optional<FlightTrajectory>& trajectory;  ///< with --trajectory, from the first matched frame on
-  std::optional<io::McapWriter>& mcap;          ///< with --write mcap
   const FlightPlan& plan;
   Progress& progress;
   const StopSignals& stop;
 };
 
-/// Processes the frames that are not in the journal: one thread reads, one matches (with the threads of the options),
+/// Processes the frames that are not on record: one thread reads, one matches (with the threads of the options),
 /// others find damage and encode; results are written in order. No frame is dropped. Returns true at the end of the
 /// source; false after Ctrl-C, when all frames already read are finished.
 bool run_flight(const FlightSettings& settings, Flight& flight);
