@@ -130,7 +130,7 @@ std::vector<std::pair<std::string, std::string>> head_of(const FlightSettings& s
 
 std::string source_name(const FlightSettings& settings) {
   const std::string& name = settings.source.front();
-  const std::filesystem::path path = std::filesystem::path(name).lexically_normal();
+  const std::filesystem::path path = std::filesystem::absolute(name).lexically_normal();
   if (name.find(" ! ") != std::string::npos) return "GStreamer pipeline";
   return path.has_filename() ? path.filename().string() : path.parent_path().filename().string();
 }
