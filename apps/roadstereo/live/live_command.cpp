@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <exception>
 #include <optional>
 
 #include "live/live_server.hpp"
@@ -86,11 +87,17 @@ void live(const LiveCommandArguments& arguments, const NamedOpener& opener) {
   signals.reset();
   session.stop();
   const std::string last_message = session.board().status().message;
-  session.end();
+  std::exception_ptr failure;
+  try {
+    session.end();
+  } catch (const std::exception&) {
+    failure = std::current_exception();
+  }
   server.reset();
   LiveSummary summary{session.description(), seconds_between(start, Clock::now()), session.board().status(),
                       session.board().latency_of_all()};
   fmt::print("{}", arguments.json ? summary_json(summary) : summary_text(summary));
+  if (failure) std::rethrow_exception(failure);
   const std::string& stopped = summary.status.recording.message;
   if (!stopped.empty()) fail<SystemError>(arguments.record, ": ", stopped);
   const LiveCounts& counts = summary.status.counts;
