@@ -2,9 +2,11 @@
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <fstream>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -37,7 +39,7 @@ struct BenchmarkArguments {
 
 StereoPair make_pair(const BenchmarkArguments& arguments) {
   if (!arguments.files.left.empty()) return read_pair(arguments.files, arguments.threads);
-  const ImageSize size = parse_image_size(arguments.size);
+  const ImageSize size = parse_image_size("--size", arguments.size);
   constexpr int largest = 8192;
   if (size.width > largest || size.height > largest) {
     fail("--size is ", arguments.size, "; the sides must be at most ", largest, " pixels");
@@ -142,12 +144,16 @@ BenchmarkReport measure(const BenchmarkArguments& arguments) {
   return report;
 }
 
+/// Called before minutes of measurement.
+void require_writable(const std::string& path) {
+  if (!std::ofstream(path, std::ios::app)) fail("cannot write ", path, ": ", std::generic_category().message(errno));
+}
+
 void write_json(const std::string& path, const std::string& text) {
   std::ofstream file(path);
-  if (!file) fail("cannot write ", path);
   file << text;
   file.close();
-  if (!file) throw SystemError("cannot write " + path + ": the disk may be full");
+  if (!file) fail<SystemError>("cannot write ", path, ": ", std::generic_category().message(errno));
 }
 
 void benchmark(const BenchmarkArguments& arguments) {
@@ -160,9 +166,10 @@ void benchmark(const BenchmarkArguments& arguments) {
   if (arguments.raw_disparities < 0 || arguments.raw_disparities > most_disparities) {
     fail("--raw-disparities is ", arguments.raw_disparities, "; it must be between 0 and ", most_disparities);
   }
+  if (!arguments.json.empty()) require_writable(arguments.json);
   const BenchmarkReport report = measure(arguments);
-  if (!arguments.json.empty()) write_json(arguments.json, report_json(report));
   fmt::print("{}", report_text(report));
+  if (!arguments.json.empty()) write_json(arguments.json, report_json(report));
 }
 
 constexpr const char* benchmark_footer =

@@ -7,7 +7,7 @@
 
 namespace roadstereo::cli {
 
-ImageSize parse_image_size(const std::string& text) {
+ImageSize parse_image_size(const std::string& option, const std::string& text) {
   ImageSize size;
   const char* end = text.data() + text.size();
   const auto width = std::from_chars(text.data(), end, size.width);
@@ -15,7 +15,7 @@ ImageSize parse_image_size(const std::string& text) {
     const auto height = std::from_chars(width.ptr + 1, end, size.height);
     if (height.ec == std::errc() && height.ptr == end && size.width > 0 && size.height > 0) return size;
   }
-  fail("--size must be WIDTHxHEIGHT, for example 640x360, but is \"", text, "\"");
+  fail(option, " must be WIDTHxHEIGHT, for example 640x360, but is \"", text, "\"");
 }
 
 }  // namespace roadstereo::cli

@@ -44,7 +44,7 @@ StereoCalibration read_file(const LimitsArguments& arguments) {
       io::read_calibration(path, arguments.calibration.size() > 1 ? arguments.calibration[1] : "");
   if (!file.rigs.empty()) {
     if (arguments.size.empty()) fail(path, " has rigs of several sizes; choose one with --size WIDTHxHEIGHT");
-    const ImageSize size = parse_image_size(arguments.size);
+    const ImageSize size = parse_image_size("--size", arguments.size);
     file.select_size(size.width, size.height, path);
   }
   if (!file.rectified) fail(path, ": the rig is not rectified; use the calibration of the rectified pair");
@@ -57,7 +57,7 @@ StereoCalibration read_rig(const LimitsArguments& arguments) {
   const std::string name = from_file ? arguments.calibration.front() : "the rig of --focal-px";
   StereoCalibration calibration = from_file ? read_file(arguments) : StereoCalibration{};
   if (!arguments.size.empty()) {
-    const ImageSize size = parse_image_size(arguments.size);
+    const ImageSize size = parse_image_size("--size", arguments.size);
     if (from_file) calibration.validate(size.width, size.height, name);
     calibration.width = size.width;
     calibration.height = size.height;

@@ -11,7 +11,7 @@ namespace {
 
 /// Sets the image size; scales the focal length, so that the field of view is kept.
 void apply_size(synth::Rig& rig, const std::string& size) {
-  const auto [width, height] = parse_image_size(size);
+  const auto [width, height] = parse_image_size("--size", size);
   rig.focal_px *= static_cast<double>(width) / rig.width;
   rig.width = width;
   rig.height = height;

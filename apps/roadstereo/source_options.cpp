@@ -45,7 +45,7 @@ io::SourceOptions make_source_options(const SourceSettings& choice) {
   options.max_time_difference_s = choice.max_time_difference_ms * ms;
   options.rate_hz = choice.rate_hz;
   if (!choice.camera_size.empty()) {
-    const ImageSize size = parse_image_size(choice.camera_size);
+    const ImageSize size = parse_image_size("--camera-size", choice.camera_size);
     options.camera_width = size.width;
     options.camera_height = size.height;
   }

@@ -85,6 +85,15 @@ TEST_F(BenchmarkCommand, DescribesKernelsOfDevice) {
   EXPECT_GT(launches, 15);
 }
 
+TEST_F(BenchmarkCommand, FileIsTriedBeforeMeasurement) {
+  const std::string benchmark = "benchmark --size 96x64 --disparities 16 --runs 1 --no-peers --json ";
+  expect_complaint(run(benchmark + "none/a.json"), "cannot write none/a.json: No such file or directory");
+  const Outcome full = run(benchmark + "/dev/full");
+  EXPECT_EQ(full.exit_code, 1);
+  EXPECT_NE(full.out.find("total"), std::string::npos) << full.out;
+  EXPECT_NE(full.err.find("cannot write /dev/full: No space left on device"), std::string::npos) << full.err;
+}
+
 TEST_F(BenchmarkCommand, RejectsBadInput) {
   expect_complaint(run("benchmark --size 640"), 2, "640x360");
   expect_complaint(run("benchmark --runs 0"), 2, "--runs");

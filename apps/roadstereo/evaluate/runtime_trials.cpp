@@ -45,7 +45,7 @@ double RuntimeReport::mde_per_s(double ms) const {
 
 RuntimeReport time_methods(const RuntimeOptions& options) {
   options.validate();
-  const ImageSize size = parse_image_size(options.size);
+  const ImageSize size = parse_image_size("--size", options.size);
   const StereoPair pair = synthetic_pair(size.width, size.height);
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const int threads = options.methods.threads > 0 ? options.methods.threads : cores;
