@@ -95,9 +95,9 @@ Ticks round_ticks(double lowest, double highest, int max_count) {
 }
 
 std::string number_text(double value, int decimals) {
-  const double scale = std::pow(10.0, decimals);
-  const double shown = std::round(value * scale) == 0 ? 0.0 : value;
-  return fixed_text(shown, decimals);
+  std::string text = fixed_text(value, decimals);
+  const bool is_minus_zero = text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos;
+  return is_minus_zero ? text.substr(1) : text;
 }
 
 }  // namespace roadstereo::io

@@ -111,6 +111,8 @@ std::string complaint(const Call& call) {
 
 TEST(NumberText, HasEveryDigit) {
   EXPECT_EQ(number_text(-0.0004, 3), "0.000");
+  EXPECT_EQ(number_text(-0.5, 0), "0");
+  EXPECT_EQ(number_text(-0.6, 0), "-1");
   EXPECT_EQ(number_text(2.5, 3), "2.500");
   EXPECT_EQ(number_text(1e100, 0).size(), 101U);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <vector>
@@ -153,11 +154,19 @@ std::string property_list(const std::vector<std::pair<std::string, std::string>>
 
 namespace {
 
+/// A limit of a scheme as its file has it.
+std::string limit_text(double limit_m) {
+  constexpr double steps_per_mm = 1e6;  // finer digits are those of the conversion to metres
+  const double limit_mm = std::round(mm * limit_m * steps_per_mm) / steps_per_mm;
+  std::array<char, 400> text{};  // more than the largest number has
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), limit_mm, std::chars_format::fixed).ptr};
+}
+
 /// "13 – 25 mm", or "over 50 mm" for the last limit.
 std::string interval_text(const std::vector<double>& limits_m, std::size_t i) {
-  const std::string from = number_text(mm * limits_m[i], 0);
+  const std::string from = limit_text(limits_m[i]);
   if (i + 1 == limits_m.size()) return "over " + from + " mm";
-  return from + " – " + number_text(mm * limits_m[i + 1], 0) + " mm";
+  return from + " – " + limit_text(limits_m[i + 1]) + " mm";
 }
 
 std::string table_html(const SeverityTable& table) {

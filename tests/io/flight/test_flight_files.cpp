@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "io/report/summary.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
 #include "roadstereo/io/flight_journal.hpp"
@@ -238,6 +239,15 @@ TEST(FlightPictures, WhiteIsThatOfProcessing) {
          {frame_thumbnail(left.view(), 4095, map), damage_picture(left.view(), 4095, map, damage)}) {
       EXPECT_NEAR(cv::mean(cv::imdecode(jpeg, cv::IMREAD_GRAYSCALE))[0], 29, 2) << brightest;
     }
+  }
+}
+
+TEST(FlightReport, LegendHasLimitsOfScheme) {
+  SeverityScheme scheme = astm_d6433();
+  scheme.tables[0].depths_m = {0.0005, 0.0125, 0.1};
+  const std::string html = severity_legend(scheme);
+  for (const char* limits : {">0.5 – 12.5 mm<", ">12.5 – 100 mm<", ">over 100 mm<", ">100 – 200 mm wide<"}) {
+    EXPECT_NE(html.find(limits), std::string::npos) << limits << " in " << html;
   }
 }
 
