@@ -71,7 +71,8 @@ class Track {
 ///                  missing; what is not above 0 is unknown
 ///                  time_utc_usec, lat, lon, alt of PX4's vehicle_gps_position, as ulog2csv writes it: microseconds,
 ///                  1e-7 degrees, millimetres (or latitude_deg, longitude_deg, altitude_msl_m)
-///   NMEA 0183      RMC and GGA sentences; those with a wrong checksum or without a fix are left out
+///   NMEA 0183      RMC and GGA sentences; those with a wrong checksum or without a fix are left out. Altitudes are
+///                  above the ellipsoid where GGA has the geoid separation
 ///   SRT            subtitles of DJI drones; times are seconds since the start of the video
 ///   bag            ROS 1, rosbag2 or MCAP with one topic of sensor_msgs/NavSatFix, with its covariances
 /// Throws Error naming the file, the line, the value and its limits; also if times decrease.

@@ -72,7 +72,7 @@ double day_s(const std::string& where, std::string_view text) {
   return 86400.0 * static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
 }
 
-/// Altitude of a GGA sentence.
+/// Altitude of a GGA sentence: above the ellipsoid where it tells the geoid, else above mean sea level.
 struct Altitude {
   double second_of_day = -1;
   double metres = 0;
@@ -110,6 +110,8 @@ class NmeaReader {
   void read_gga(const std::string& where, const std::vector<std::string_view>& fields) {
     if (fields[1].empty() || fields[9].empty()) return;
     altitude_ = {second_of_day(where, fields[1]), parse_known(where, "altitude", fields[9])};
+    const double geoid_m = fields.size() > 11 ? parse_known(where, "geoid separation", fields[11]) : std::nan("");
+    if (std::isfinite(geoid_m)) altitude_.metres += geoid_m;
     if (!points.empty() && altitude_.second_of_day == last_second_) points.back().point.alt_m = altitude_.metres;
   }
 

@@ -436,8 +436,8 @@ TEST_F(TrackFile, ReadsNmea) {
   EXPECT_NEAR(read[0].lat_deg, 48.1173, 1e-9);  // 7.038 minutes
   EXPECT_NEAR(read[0].lon_deg, 11 + 31.0 / 60, 1e-9);
   EXPECT_NEAR(read[1].lon_deg, -11 - 31.0 / 60, 1e-9);
-  EXPECT_DOUBLE_EQ(read[0].alt_m, 545.4);
-  EXPECT_DOUBLE_EQ(read[1].alt_m, 546.0);
+  EXPECT_DOUBLE_EQ(read[0].alt_m, 545.4 + 46.9) << "above the ellipsoid";
+  EXPECT_DOUBLE_EQ(read[1].alt_m, 546.0 + 46.9);
   EXPECT_DOUBLE_EQ(read[0].heading_deg, 84.4);
   expect_refused("$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6B\n", "right checksum");
 }
