@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <string>
 #include <vector>
 
 #include "io/map_blocks.hpp"
@@ -30,7 +31,7 @@ void write_map_points(const std::filesystem::path& file, const MapBox& bounds, c
   });
   std::ofstream stream(file, std::ios::binary);
   require_written(stream, file);
-  stream << "ply\nformat binary_little_endian 1.0\nelement vertex " << points
+  stream << "ply\nformat binary_little_endian 1.0\nelement vertex " << std::to_string(points)
          << "\nproperty double x\nproperty double y\nproperty double z\nproperty float sigma\nproperty uchar red\n"
             "property uchar green\nproperty uchar blue\nend_header\n";
   std::vector<char> bytes;

@@ -3,8 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <iomanip>
-#include <sstream>
+#include <string>
 
 namespace roadstereo::io {
 namespace {
@@ -104,6 +103,12 @@ std::optional<double> take_offset(Scanner& text) {
   return 3600.0 * hour + 60.0 * minute;
 }
 
+/// At least so many digits, whatever the locale.
+std::string padded(int value, std::size_t width) {
+  const std::string digits = std::to_string(value);
+  return std::string(digits.size() < width ? width - digits.size() : 0, '0') + digits;
+}
+
 }  // namespace
 
 std::optional<UtcTime> utc_time(double unix_s) {
@@ -122,16 +127,9 @@ std::optional<UtcTime> utc_time(double unix_s) {
 }
 
 std::string iso_text(const UtcTime& time) {
-  std::ostringstream text;
-  text << std::setfill('0') << std::setw(4) << time.year;
-  const auto two = [&text](char before, int value) { text << before << std::setw(2) << value; };
-  two('-', time.month);
-  two('-', time.day);
-  two('T', time.hour);
-  two(':', time.minute);
-  two(':', time.millisecond / 1000);
-  text << '.' << std::setw(3) << time.millisecond % 1000 << 'Z';
-  return text.str();
+  return padded(time.year, 4) + '-' + padded(time.month, 2) + '-' + padded(time.day, 2) + 'T' + padded(time.hour, 2) +
+         ':' + padded(time.minute, 2) + ':' + padded(time.millisecond / 1000, 2) + '.' +
+         padded(time.millisecond % 1000, 3) + 'Z';
 }
 
 std::optional<IsoTime> parse_iso_time(std::string_view text) {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <sstream>
+#include <string>
 #include <vector>
 
 #include "core/round_length.hpp"
@@ -52,19 +52,20 @@ std::string edge_path(const Mask& mask) {
 
 /// Cells of `side` pixels of the mask as an SVG path of horizontal bars.
 std::string area_path(const Mask& mask, int side) {
-  std::ostringstream path;
+  std::string path;
+  const auto number = [](int value) { return std::to_string(value); };
   for (int v = 0; v < mask.height(); ++v) {
     int length = 0;
     for (int u = 0; u <= mask.width(); ++u) {
       const bool on = u < mask.width() && mask(u, v) != 0;
       if (!on && length > 0) {
-        path << 'M' << (u - length) * side << ' ' << v * side << 'h' << length * side << 'v' << side << "h-"
-             << length * side << 'z';
+        path += 'M' + number((u - length) * side) + ' ' + number(v * side) + 'h' + number(length * side) + 'v' +
+                number(side) + "h-" + number(length * side) + 'z';
       }
       length = on ? length + 1 : 0;
     }
   }
-  return path.str();
+  return path;
 }
 
 /// Cells of `side` pixels of which at least half is in the mask.
