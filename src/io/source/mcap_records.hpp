@@ -85,7 +85,6 @@ class McapFile {
   /// Offset of the summary at the end; nullopt if the file has none, or is cut off.
   std::optional<std::uint64_t> summary_offset();
   void seek(std::uint64_t offset) { at_ = offset; }
-  std::uint64_t at() const { return at_; }
 
   /// Reads the record at the present offset into the file's buffer. Content of records for which `wanted` is false is
   /// skipped and empty. Returns nullopt at the end, also where the last record is cut off. Throws Error for a record
