@@ -59,7 +59,9 @@ void add_map(CLI::App& app) {
   command->add_option("--output", settings->output, "Output folder; created if missing")->type_name("DIR")->required();
   command->add_option("--cell", settings->cell_m, "Side of a cell, metres; default: by the first frame")
       ->type_name("M");
-  command->add_option("--crs", settings->crs, "Coordinate system of the trajectories, z up, e.g. EPSG:32632")
+  command
+      ->add_option("--crs", settings->crs,
+                   "Coordinate system of the trajectories, z up, e.g. EPSG:32632; default: that of the runs")
       ->type_name("NAME");
   command->add_option("--every", settings->every, "Process every N-th frame")->type_name("N");
   command->add_flag("--points", settings->points, "Write points.ply, too");
