@@ -36,7 +36,7 @@ TEST_F(GroupedDigits, PointsAreCountedWithoutSeparators) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("roadstereo_locale" + std::to_string(::getpid()) + ".ply");
   const MapBox bounds{0, 0, 50, 40};
-  io::write_map_points(file, bounds, {.cell_m = 0.01}, [](const MapBox& box) {
+  io::write_map_points(file, bounds, {.cell_m = 0.01, .crs = ""}, [](const MapBox& box) {
     MapRaster raster;
     raster.box = box;
     raster.height = Image<float>(box.columns, box.rows);
