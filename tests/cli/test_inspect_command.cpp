@@ -382,7 +382,7 @@ TEST_F(InspectCommand, SummaryNamesOnlyWhatWasWritten) {
 TEST_F(InspectCommand, DamageIsNotWrittenIntoItsResults) {
   make_road();
   ASSERT_EQ(inspect().exit_code, 0);
-  expect_complaint(run("damage result/transformed.tiff --output result"), 2, "results of inspect");
+  expect_complaint(run("damage result/transformed.tiff --output result"), 2, "results of a pair");
 }
 
 TEST_F(InspectCommand, InterruptedLeavesNoFiles) {

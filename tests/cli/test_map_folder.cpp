@@ -62,10 +62,10 @@ TEST_F(MapFolder, IsNotThatOfOtherCommands) {
   EXPECT_EQ(read_text(folder_ / "map/damages.csv"), damages);
 }
 
-// Looking at the sky no cell is seen.
+// Looking up no cell is seen.
 TEST_F(MapFolder, EmptyMapLeavesNothing) {
-  write("sky.txt", std::string("1 0 0 0 0 -1 0 0 0 0 -1 0\n1 0 0 0 0 -1 0 0 0 0 -1 0\n"));
-  expect_complaint(run("map flight --crs EPSG:32632 --trajectory sky.txt --output map --quiet"), "the map is empty");
+  write("up.txt", std::string("1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n"));
+  expect_complaint(run("map flight --crs EPSG:32632 --trajectory up.txt --output map --quiet"), "the map is empty");
   EXPECT_FALSE(fs::exists(folder_ / "map"));
 }
 
