@@ -10,14 +10,15 @@ namespace roadstereo {
 
 void CellLevels::begin(int width, int height) {
   constexpr int cells_across = 160;
-  width_ = width;
-  height_ = height;
+  width_ = height_ = 0;  // until there is memory
   cell_px_ = std::max(1, width / cells_across);
   frames_ = 0;
   for (Image<float>* const cells : {&cells_, &last_, &mean_, &variance_}) {
     cells->assign(width / cell_px_, height / cell_px_, 0);
   }
   sums_.resize(static_cast<std::size_t>(width));
+  width_ = width;
+  height_ = height;
 }
 
 void CellLevels::average_cells(ImageView<const std::int16_t> grey) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -268,6 +269,15 @@ TEST(PaddedRows, KeepValuesWhileLaidOutAlike) {
   rows.resize(2, 0, 100);
   EXPECT_EQ(rows.row(1)[7], 3);
   rows.resize(1, 0, 100);
+  rows.resize(2, 0, 100);
+  EXPECT_EQ(rows.row(1)[7], 0);
+}
+
+TEST(PaddedRows, AreMadeAnewAfterMemoryRanOut) {
+  cpu::PaddedRows<float> rows;
+  rows.resize(2, 0, 100);
+  constexpr std::size_t too_many = std::numeric_limits<std::size_t>::max() / 512;  // of 4 bytes times 256 columns
+  EXPECT_THROW(rows.resize(too_many, 0, 100), std::bad_alloc);
   rows.resize(2, 0, 100);
   EXPECT_EQ(rows.row(1)[7], 0);
 }

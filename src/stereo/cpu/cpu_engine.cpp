@@ -127,17 +127,21 @@ class CpuEngine final : public StereoEngine {
     for (ViewMatcher& matcher : matchers_) matcher.set_prior(options);
     const MatcherOptions support = without_prior(options);
     if (options_ == support) return;
-    options_ = support;
-    taps_ = trimmed_taps(options);
+    options_.reset();  // until all is prepared
     prepared_columns_ = prepared_disparities_ = 0;
+    taps_ = trimmed_taps(options);
+    options_ = support;
   }
 
   /// Memory for the largest tile so far: frames that differ in their search ranges allocate nothing.
   void prepare(int columns, int disparities) {
     if (columns <= prepared_columns_ && disparities <= prepared_disparities_) return;
-    prepared_columns_ = std::max(columns, prepared_columns_);
-    prepared_disparities_ = std::max(disparities, prepared_disparities_);
-    for (ViewMatcher& matcher : matchers_) matcher.prepare(prepared_columns_, prepared_disparities_, *options_, taps_);
+    const int most_columns = std::max(columns, prepared_columns_);
+    const int most_disparities = std::max(disparities, prepared_disparities_);
+    prepared_columns_ = prepared_disparities_ = 0;  // should memory run out
+    for (ViewMatcher& matcher : matchers_) matcher.prepare(most_columns, most_disparities, *options_, taps_);
+    prepared_columns_ = most_columns;
+    prepared_disparities_ = most_disparities;
   }
 
   int threads_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <new>
 
 namespace roadstereo::cpu {
 
@@ -24,6 +25,7 @@ class PaddedRows {
     const std::size_t size = rows * static_cast<std::size_t>(pitch);
     if (offset == offset_ && pitch == pitch_ && size == size_) return;
     if (size > capacity_) {
+      size_ = capacity_ = 0;  // until there is memory
       values_ = hwy::AllocateAligned<T>(size);
       if (!values_) throw std::bad_alloc();
       capacity_ = size;
