@@ -35,23 +35,25 @@ class LensWatch {
   const LensSpots& spots() const { return spots_; }
 
  private:
-  struct Extreme {
-    int u, v, sign;  ///< 1: brighter than its neighbours, −1: darker
-  };
+  /// One bit per pixel, set for those that are brighter, or darker, than their neighbours.
+  using Extremes = Image<std::uint64_t>;
 
   void begin(int width, int height);
   void add_extremes(ImageView<const std::int16_t> grey);
   bool stands_out(int x, int y, int reach) const;
   void find_steady_cells();
   void count_dirt();
+  bool is_moving(int u, int v) const;
   void count_dead_pixels();
 
-  CellLevels levels_{0.5};
+  static constexpr double moving_share = 0.5;  ///< of the image, from which on a frame counts
+
+  CellLevels levels_{moving_share};
   int width_ = 0, height_ = 0;
-  Image<float> deviation_;         ///< of every cell over the frames
-  Image<std::uint8_t> steady_;     ///< 1: cell of a place
-  std::vector<Extreme> extremes_;  ///< in every frame since the last count
-  std::vector<int> pending_;       ///< cells of a place whose neighbours are to be looked at
+  Image<float> deviation_;      ///< of every cell over the frames
+  Image<std::uint8_t> steady_;  ///< cells of places: how many cells off they stand out; 0: other cells
+  Extremes brighter_, darker_;  ///< in every frame since the last count
+  std::vector<int> pending_;    ///< cells of a place whose neighbours are to be looked at
   LensSpots spots_;
 };
 

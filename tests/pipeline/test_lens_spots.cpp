@@ -40,15 +40,15 @@ const GreyImage& road() {
   return texture;
 }
 
-GreyImage frame_at(int metres) {
-  GreyImage frame(width, height);
-  for (int v = 0; v < height; ++v) std::copy_n(road().row(v + metres), width, frame.row(v));
+GreyImage frame_at(int metres, int columns) {
+  GreyImage frame(columns, height);
+  for (int v = 0; v < height; ++v) std::copy_n(road().row(v + metres), columns, frame.row(v));
   return frame;
 }
 
 void darken(GreyImage& frame, double u, double v, double radius, double share) {
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
+  for (int y = 0; y < frame.height(); ++y) {
+    for (int x = 0; x < frame.width(); ++x) {
       if (std::hypot(x - u, y - v) > radius) continue;
       frame(x, y) = static_cast<std::int16_t>((1 - share) * frame(x, y) + share * grey_max * 20 / 255);
     }
@@ -59,10 +59,10 @@ constexpr std::array<std::array<double, 3>, 6> specks{
     {{40, 30, 6}, {150, 60, 5}, {300, 90, 6}, {80, 120, 5}, {220, 140, 9}, {120, 168, 5}}};
 
 template <class Spoil>
-LensSpots spots_after(int frames, int rows_per_frame, const Spoil& spoil) {
+LensSpots spots_after(int frames, int rows_per_frame, const Spoil& spoil, int columns = width) {
   LensWatch watch;
   for (int i = 0; i < frames; ++i) {
-    GreyImage frame = frame_at(1000 - rows_per_frame * i);
+    GreyImage frame = frame_at(1000 - rows_per_frame * i, columns);
     spoil(frame);
     watch.add(frame);
   }
@@ -86,6 +86,19 @@ TEST(LensWatch, CountsSixSpecksAfterTwentyFrames) {
   EXPECT_EQ(health.findings()[0].value, 6);
   EXPECT_NE(health.findings()[0].text.find("6 places of the left picture"), std::string::npos);
   EXPECT_TRUE(health.depth_is_trusted());
+}
+
+/// At widths whose cells are one and two pixels.
+TEST(LensWatch, LargeSpotsAreSeenAsSmallOnesAre) {
+  for (const int columns : {319, 320}) {
+    for (const double share : {0.03, 0.06, 0.12, 0.2}) {
+      const LensSpots spots = spots_after(
+          20, 9, [&](GreyImage& frame) { darken(frame, 150, 80, 0.5 * share * columns, 0.8); }, columns);
+      EXPECT_EQ(spots.dirt, 1) << columns << " " << share;
+      EXPECT_NEAR(spots.largest_u, 150, 2) << columns << " " << share;
+      EXPECT_NEAR(spots.largest_v, 80, 2) << columns << " " << share;
+    }
+  }
 }
 
 TEST(LensWatch, CleanViewHasNone) {
@@ -120,6 +133,8 @@ TEST(LensWatch, CountsDeadPixels) {
   });
   EXPECT_EQ(spots.dirt, 0);
   EXPECT_EQ(spots.dead_pixels, 50);
+  EXPECT_EQ(spots.largest_u, 5);
+  EXPECT_EQ(spots.largest_v, 7);
   PairHealth health;
   health.spots.right = spots;
   ASSERT_EQ(health.findings().size(), 1U);
