@@ -175,6 +175,7 @@ int noise_mask(Grey image, int u, int v) {
   return second_difference(v - 1) - 2 * second_difference(v) + second_difference(v + 1);
 }
 
+/// In 1/16 grey level, squared.
 double block_variance(Grey image, int at_u, int at_v) {
   constexpr int width = 2 * noise_block_radius + 1, pixels = width * width;
   int sum = 0, squares = 0;  // of 49 levels of at most grey_max
@@ -190,17 +191,20 @@ double block_variance(Grey image, int at_u, int at_v) {
 
 /// Variances of the white noise of a view and of that of its columns and rows, by the median variance of blocks of the
 /// road. White noise is what the mask responds to differently in both views, where matches are nearly whole pixels:
-/// fine texture is the same in both. To a column or a row the mask does not respond.
+/// fine texture is the same in both, but for the gain, by which the right levels are divided. To a column or a row the
+/// mask does not respond.
 void measure_noise(const FrameResult& frame, const DamageMap& damage, PairHealth& health) {
   constexpr double mask_norm = 6, max_fraction_px = 0.25;
   constexpr std::size_t min_blocks = 100;
+  const double to_left = std::isnan(health.gain) ? 1 : 1 / health.gain;  // right levels times that are left ones
   std::vector<float> differences, variances;
   for_each_sample(frame.grey, noise_block_radius, [&](int u, int v) {
-    const std::optional<Match> match = match_of(frame, damage, u, v, 1);
+    const std::optional<Match> match = match_of(frame, damage, u, v, noise_block_radius);
     if (!match || match->off_px > max_fraction_px) return;
     differences.push_back(
-        static_cast<float>(noise_mask(frame.grey, u, v) - noise_mask(frame.right, match->u, match->v)));
-    variances.push_back(static_cast<float>(block_variance(frame.grey, u, v)));
+        static_cast<float>(noise_mask(frame.grey, u, v) - to_left * noise_mask(frame.right, match->u, match->v)));
+    const double right_variance = to_left * to_left * block_variance(frame.right, match->u, match->v);
+    variances.push_back(static_cast<float>(0.5 * (block_variance(frame.grey, u, v) + right_variance)));
   });
   if (variances.size() < min_blocks) return;
   const double noise = gaussian_mad * upper_median_magnitude(differences) / mask_norm;
@@ -208,7 +212,8 @@ void measure_noise(const FrameResult& frame, const DamageMap& damage, PairHealth
   if (variance <= 0) return;
   health.noise_share = 0.5 * noise * noise / variance;
   constexpr double in_block = 0.875;  // 6/7 · 49/48: a block of 7×7 pixels has 7 stripes
-  const double stripes = stripe_variance(frame.grey, damage.road) + stripe_variance(frame.right, damage.road);
+  const double stripes =
+      stripe_variance(frame.grey, damage.road) + to_left * to_left * stripe_variance(frame.right, damage.road);
   health.stripe_share = std::isnan(stripes) ? PairHealth::unknown : std::min(1.0, 0.5 * in_block * stripes / variance);
 }
 
@@ -222,22 +227,20 @@ double block_steps(double measured, Grey image) {
 }  // namespace
 
 void measure_pictures(const FrameResult& frame, const DamageMap& damage, int threads, PairHealth& health) {
-  constexpr int figures = 6;
+  constexpr int figures = 5;
   parallel_for(figures, threads, [&](int figure, int) {
     switch (figure) {
       case 0:
+        measure_exposure(frame, damage, health);
         measure_noise(frame, damage, health);
         break;
       case 1:
-        measure_exposure(frame, damage, health);
-        break;
-      case 2:
         health.blur_left_px = blur_of(frame.grey, damage);
         break;
-      case 3:
+      case 2:
         health.blur_right_px = blur_of(frame.right, damage);
         break;
-      case 4:
+      case 3:
         health.blocks_left = block_steps(frame.block_steps[0], frame.grey);
         break;
       default:

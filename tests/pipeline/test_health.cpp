@@ -250,6 +250,25 @@ TEST(MeasureHealth, NoiseIsShareOfVariance) {
   EXPECT_TRUE(much.depth_is_trusted());
 }
 
+// A gain of the right view changes its noise and its texture alike. The darker levels are rounded to whole ones, too.
+TEST(MeasureHealth, NoiseIsThatOfViewsOfOneGain) {
+  const auto share_with = [](double gain) {
+    const ExactFrame noisy([gain](Frame& left, Frame& right) {
+      std::mt19937 random(5);
+      std::normal_distribution<double> noise(0, 8);
+      for (Frame* const frame : {&left, &right}) {
+        const double factor = 0.5 * (frame == &right ? gain : 1);  // not above 255
+        for (std::uint8_t& level : frame->bytes)
+          level = static_cast<std::uint8_t>(std::clamp(std::lround(factor * (level + noise(random))), 0L, 255L));
+      }
+    });
+    return noisy.health().noise_share;
+  };
+  const double alike = share_with(1);
+  EXPECT_GT(alike, 0.05);
+  for (const double gain : {0.55, 1.8}) EXPECT_NEAR(share_with(gain), alike, 0.1 * alike) << gain;
+}
+
 // Every column, or row, of either sensor has its own offset of 2 grey levels, standard deviation.
 TEST(MeasureHealth, NoiseOfColumnsAndRowsIsShareOfVariance) {
   const double none = ExactFrame().health().stripe_share;
