@@ -46,7 +46,12 @@ void Pipeline::warm_up(int width, int height) {
   const SyntheticTexture left(width, height, options().white_level, false);
   const SyntheticTexture right(width, height, options().white_level, true);
   constexpr int frames = 2;  // found anew, and carried over
-  for (int frame = 0; frame < frames; ++frame) process(left.view(), right.view());
+  try {
+    for (int frame = 0; frame < frames; ++frame) process(left.view(), right.view());
+  } catch (...) {
+    reset();
+    throw;
+  }
   reset();
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <new>
 #include <string>
 #include <thread>
 #include <vector>
@@ -140,6 +141,29 @@ TEST(RegisterEngine, DisparitiesWithoutRoadGeometryAreWarning) {
                             [](const std::string& warning) { return warning_code(warning) == "few-disparities"; }));
     EXPECT_TRUE(std::isnan(result.transformed(100, 50)));
   }
+}
+
+/// Fails from its second frame on.
+class FailingEngine final : public StereoEngine {
+ public:
+  void match(const MatchInput& input, const MatcherOptions& options, MatchMaps& maps) override {
+    if (++frames_ > 1) throw std::bad_alloc();
+    cpu_->match(input, options, maps);
+  }
+
+ private:
+  std::unique_ptr<StereoEngine> cpu_ = make_engine("cpu", 1);
+  int frames_ = 0;
+};
+
+TEST(RegisterEngine, WarmUpThatFailsLeavesNoRoad) {
+  register_engine({"failing", "", false, [](int /*threads*/) { return std::make_unique<FailingEngine>(); }});
+  PipelineOptions options = preset("fast");
+  options.engine = "failing";
+  Pipeline pipeline(options);
+  EXPECT_THROW(pipeline.warm_up(320, 180), std::bad_alloc);
+  EXPECT_EQ(pipeline.carried().width, 0);
+  EXPECT_FALSE(pipeline.carried().road.has_value());
 }
 
 TEST(RegisterEngine, RejectsNamesThatAreTaken) {
