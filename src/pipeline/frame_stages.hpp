@@ -97,7 +97,7 @@ class FrameStages {
   /// Subtracts the bias of the rig, if any: returns the disparity map ℓ.
   virtual ImageView<const float> subtract_bias(ImageView<const float> disparity,
                                                const std::optional<RigBias>& bias) = 0;
-  /// estimate_roll, when at least `min_share` of the pixels have a disparity. A device that need not return to the host
+  /// estimate_roll, when there is a road, `prior`, and at least `min_share` of the pixels have a disparity. A device
   /// goes on with the transformation, for which it takes `shift`.
   virtual RollFit estimate_roll(ImageView<const float> disparity, const std::optional<DisparityPlane>& prior,
                                 double initial_roll_rad, double min_share, const PerspectiveShift& shift) = 0;

@@ -10,6 +10,7 @@
 #include "core/grey_weights.hpp"
 #include "core/parallel.hpp"
 #include "pipeline/pair_checks.hpp"
+#include "pipeline/support_samples.hpp"
 #include "road/lucas_kanade/alignment_maps.hpp"
 #include "road/refinement/refinement_maps.hpp"
 #include "road/rig_bias_field.hpp"
@@ -17,7 +18,6 @@
 #include "road/row_shift.hpp"
 #include "roadstereo/device.hpp"
 #include "roadstereo/error.hpp"
-#include "stereo/adaptive_support.hpp"
 #include "stereo/coarse/coarse_search.hpp"
 #include "stereo/window.hpp"
 
@@ -48,8 +48,7 @@ class HostStages final : public FrameStages {
  public:
   HostStages(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
       : options_(options),
-        sampled_(without_prior(options.matcher)),
-        samples_(effective_samples(options.matcher)),
+        samples_(options.matcher),
         calibration_(calibration),
         threads_(resolve_threads(options.threads)),
         engine_(make_engine(options.engine, options.threads)),
@@ -109,7 +108,7 @@ class HostStages final : public FrameStages {
 
   ResidualMaps match(const MatchInput& input, const MatcherOptions& options) override {
     engine_->match(input, options, matched_);
-    return {matched_.disparity, matched_.variance, samples_of(options), step_of(matched_, options)};
+    return {matched_.disparity, matched_.variance, samples_.of(options), step_of(matched_, options)};
   }
 
   DisparityMaps restore_disparity(const ResidualMaps& residual, const PerspectiveShift& shift) override {
@@ -162,7 +161,7 @@ class HostStages final : public FrameStages {
   RollFit estimate_roll(ImageView<const float> disparity, const std::optional<DisparityPlane>& prior,
                         double initial_roll_rad, double min_share, const PerspectiveShift&) override {
     RollFit fit{valid_share(disparity), std::nullopt};
-    if (fit.valid_share < min_share) return fit;
+    if (!prior || fit.valid_share < min_share) return fit;
     fit.geometry = geometry_if_determined(
         [&] { return roadstereo::estimate_roll(disparity, {}, prior, initial_roll_rad, options_.roll, threads_); });
     return fit;
@@ -219,19 +218,8 @@ class HostStages final : public FrameStages {
     return options.pixel_step;
   }
 
-  /// effective_samples, computed where the options have changed only; the prior has no effect on it.
-  double samples_of(const MatcherOptions& options) {
-    const MatcherOptions support = without_prior(options);
-    if (!(support == sampled_)) {
-      sampled_ = support;
-      samples_ = effective_samples(options);
-    }
-    return samples_;
-  }
-
   PipelineOptions options_;
-  MatcherOptions sampled_;
-  double samples_;
+  SupportSamples samples_;
   std::optional<StereoCalibration> calibration_;
   int threads_;
   std::unique_ptr<StereoEngine> engine_;

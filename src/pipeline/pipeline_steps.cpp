@@ -243,12 +243,11 @@ ImageView<const float> Pipeline::State::subtract_bias(ImageView<const float> dis
 /// Roll angle ψ of the least E_t, eq. (23), and projection model, section 3.3.
 void Pipeline::State::estimate_roll(ImageView<const float> disparity) {
   // A pair without a road has no results except its disparities.
-  constexpr double min_valid_share = 0.01, never = 2;
+  constexpr double min_valid_share = 0.01;
   const StageTimer timer(result.ms.roll);
   const bool has_road = result.road.has_road();
   const auto prior = has_road ? std::optional(result.road.model) : std::nullopt;
-  const RollFit fit =
-      stages->estimate_roll(disparity, prior, carried.roll_rad, has_road ? min_valid_share : never, result.shift);
+  const RollFit fit = stages->estimate_roll(disparity, prior, carried.roll_rad, min_valid_share, result.shift);
   result.valid_share = fit.valid_share;
   result.roll_found = fit.geometry.has_value();
   result.geometry = fit.geometry.value_or(RollEstimate{});

@@ -9,6 +9,7 @@
 #include "pipeline/cuda/frame_upload.hpp"
 #include "pipeline/cuda/stage_clock.hpp"
 #include "pipeline/pair_checks.hpp"
+#include "pipeline/support_samples.hpp"
 #include "road/cuda/disparity_transform.hpp"
 #include "road/cuda/map_sums.hpp"
 #include "road/cuda/perspective.hpp"
@@ -28,7 +29,6 @@
 #include "roadstereo/error.hpp"
 #include "stereo/coarse/cuda/coarse_search.hpp"
 #include "stereo/cuda/device_matcher.hpp"
-#include "stereo/window.hpp"
 
 namespace roadstereo::cuda {
 namespace {
@@ -47,6 +47,7 @@ class DeviceStages final : public FrameStages {
   DeviceStages(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration,
                const Device& device)
       : options_(options),
+        samples_(options.matcher),
         calibration_(calibration),
         device_(device.index),
         programmatic_(device.programmatic_launch),
@@ -82,7 +83,6 @@ class DeviceStages final : public FrameStages {
     copy_to_host(pair.left, left_on_host_);
     copy_to_host(pair.right, right_on_host_);
     wait_for_pair();
-    mark(StageClock::converted);
     return {left_on_host_, right_on_host_};
   }
 
@@ -129,7 +129,7 @@ class DeviceStages final : public FrameStages {
   ResidualMaps match(const MatchInput& input, const MatcherOptions& options) override {
     const DeviceMatchMaps& matched = matcher_.match(input, options, stream());
     mark(StageClock::matched);
-    return {matched.disparity, matched.variance, effective_samples(options), options.pixel_step};
+    return {matched.disparity, matched.variance, samples_.of(options), options.pixel_step};
   }
 
   /// In place.
@@ -204,6 +204,7 @@ class DeviceStages final : public FrameStages {
   void download(FrameResult& result) override;
 
   void set_device_options(const DeviceOptions& use) override {
+    require_current_device(device_);  // before events are made on another
     wait();
     stream_ = use.stream != nullptr ? use.stream : own_stream_.get();
     download_ = use.download;
@@ -278,9 +279,8 @@ class DeviceStages final : public FrameStages {
     if (download_) maps_.download_transformed(stream());
   }
 
-  RollEstimate fit_on_host(ImageView<const float> disparity);
-
   PipelineOptions options_;
+  SupportSamples samples_;
   std::optional<StereoCalibration> calibration_;
   int device_;
   bool programmatic_;
@@ -298,7 +298,6 @@ class DeviceStages final : public FrameStages {
   /// Disparities and variances between two passes of the refinement, of every second pixel after the last, too; slopes.
   DeviceArray<float> between_;
   GreyImage left_on_host_, right_on_host_;
-  Image<float> disparity_on_host_;
   RoadVerification verification_;
   std::optional<CudaCoarseSearch> coarse_search_;
   CudaCoarseSearch scene_search_;
@@ -309,59 +308,45 @@ class DeviceStages final : public FrameStages {
   RoadFit fit_;
   MapSums sums_;
   DisparityTransform transform_;
-  bool transformed_ = false;         ///< estimate_roll has enqueued the transformation
   bool complete_ = false;            ///< the host has waited for the transformed map
   std::optional<StageClock> clock_;  ///< DeviceOptions::timing
   std::optional<Recorder> recorder_;
 };
 
-/// Goes on into the transformation without the host. Only the robust fit without a road before matching comes back to
-/// it: the host searches for a plane.
+/// Goes on into the transformation without the host. Without a road it only counts.
 RollFit DeviceStages::estimate_roll(ImageView<const float> disparity, const std::optional<DisparityPlane>& prior,
                                     double initial_roll_rad, double min_share, const PerspectiveShift& shift) {
   const RollOptions& options = options_.roll;
   const MaskedMap map{disparity, {}};
   const bool robust = options.solver == RollSolver::robust;
-  transformed_ = !robust || prior.has_value();
-  if (!transformed_) {
-    // The transformation by no plane at all counts what is valid.
-    transform_.run(disparity, {nullptr, {}}, {0, 0}, maps_.transformed(), stream());
-  } else if (robust) {
-    fit_.run(map, {nullptr, *prior}, options.max_iterations, stream());
-  } else {
-    sums_.run(map, roll_from_sums(initial_roll_rad, options), stream());
-    fit_.measure(map, {sums_.plane(), {}}, stream());
-  }
-  if (transformed_) {
+  if (prior) {
+    if (robust) {
+      fit_.run(map, {nullptr, *prior}, options.max_iterations, stream());
+    } else {
+      sums_.run(map, roll_from_sums(initial_roll_rad, options), stream());
+      fit_.measure(map, {sums_.plane(), {}}, stream());
+    }
     mark(StageClock::fitted);
     enqueue_transform(disparity, {robust ? fit_.plane() : sums_.plane(), {}}, shift);
     fit_.join(stream());
+  } else {
+    // The transformation by no plane at all counts what is valid.
+    transform_.run(disparity, {nullptr, {}}, {0, 0}, maps_.transformed(), stream());
   }
   wait();
   RollFit fit{static_cast<double>(transform_.statistics().valid) / (static_cast<double>(width_) * height_),
               std::nullopt};
-  if (fit.valid_share < min_share) return fit;
+  if (!prior || fit.valid_share < min_share) return fit;
   fit.geometry = geometry_if_determined([&] {
-    if (!transformed_) return fit_on_host(disparity);
     if (robust) return finish_road_fit(fit_.statistics(), width_, height_, options);
     return finish_solved(sums_.solved(), fit_.statistics(), width_, height_, options);
   });
   return fit;
 }
 
-RollEstimate DeviceStages::fit_on_host(ImageView<const float> disparity) {
-  copy_to_host(disparity, disparity_on_host_);
-  wait();
-  return roadstereo::estimate_roll(disparity_on_host_, {}, std::nullopt, 0, options_.roll, options_.threads);
-}
-
-TransformedRoad DeviceStages::transform_disparity(ImageView<const float> disparity, const RollEstimate& geometry,
-                                                  const PerspectiveShift& shift) {
-  if (!transformed_) {
-    mark(StageClock::fitted);
-    enqueue_transform(disparity, {nullptr, geometry.plane}, shift);
-    wait();
-  }
+/// As estimate_roll has enqueued it.
+TransformedRoad DeviceStages::transform_disparity(ImageView<const float>, const RollEstimate&,
+                                                  const PerspectiveShift&) {
   const TransformStatistics& found = transform_.statistics();
   return {found.delta_t, {found.sigma_road_px, found.sigma_all_px, found.road_share}};
 }
