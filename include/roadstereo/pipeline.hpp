@@ -102,8 +102,8 @@ struct FrameResult {
   std::optional<RigBias> rig_bias;  ///< error field that was subtracted from `disparity`
 };
 
-/// State carried from one frame to the next. A run restored from it gives bit-identical results. A frame of another
-/// size resets it.
+/// State carried from one frame to the next. A run restored from it, with the same options, mask and white level, gives
+/// bit-identical results. A frame of another size resets it.
 struct PipelineState {
   int width = 0;                    ///< size of the frames, pixels; 0 before the first one
   int height = 0;                   ///< pixels
@@ -161,9 +161,9 @@ class Pipeline {
   void reset();
 
   /// Leaves out pixels of the left image where `mask` (W×H) is not 0, such as those of a bonnet: they take no part in
-  /// finding the road, and have neither disparity nor damage. It holds for all later frames; an empty mask ends it.
-  /// The engine cuda takes none: `auto` becomes cpu, and Error is thrown if cuda was asked for. `process` throws it
-  /// when the sizes differ.
+  /// finding the road, and have neither disparity nor damage. It holds for all later frames; one without set pixels
+  /// ends it. The engine cuda takes none: `auto` becomes cpu, and Error is thrown if cuda or set_device_options was
+  /// asked for. `process` throws it when the sizes differ.
   void set_mask(ImageView<const std::uint8_t> mask);
 
   /// Sets PipelineOptions::white_level from the next frame on. Throws Error outside 0 … 65535.

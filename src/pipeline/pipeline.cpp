@@ -26,12 +26,20 @@ std::unique_ptr<FrameStages> make_stages(const std::string& engine, const Pipeli
   return make_host_stages(options, calibration);
 }
 
+bool masks_nothing(ImageView<const std::uint8_t> mask) {
+  for (int v = 0; v < mask.height(); ++v) {
+    const std::uint8_t* const row = mask.row(v);
+    if (std::any_of(row, row + mask.width(), [](std::uint8_t value) { return value != 0; })) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 /// Checks the sizes. Images of a new size reset the state.
 void Pipeline::State::begin_frame(const FrameView& left, const FrameView& right) {
   begin = Clock::now();
-  has_frame = has_maps = false;
+  has_frame = has_maps = has_profile = false;
   result.warnings.clear();
   result.ms = {};
   require_one_size({left.width, left.height}, {right.width, right.height});
@@ -78,7 +86,7 @@ void Pipeline::State::end_frame() {
   }
   carried.roll_rad = result.roll_found && result.geometry.roll_observable ? result.geometry.roll_rad : 0;
   result.mde_per_s = static_cast<double>(width) * height * result.shift.disparities / (result.ms.total * 1e-3) * 1e-6;
-  has_frame = has_maps = true;
+  has_frame = has_maps = has_profile = true;
 }
 
 Pipeline::Pipeline(const PipelineOptions& options, const std::optional<StereoCalibration>& calibration)
@@ -136,18 +144,22 @@ const PipelineState& Pipeline::carried() const {
 
 void Pipeline::restore(const PipelineState& carried) {
   carried.validate();
-  state_->has_frame = state_->has_maps = false;
+  state_->has_frame = state_->has_maps = state_->has_profile = false;
   state_->carried = carried;
 }
 
 void Pipeline::set_mask(ImageView<const std::uint8_t> mask) {
+  if (masks_nothing(mask)) mask = {};
   if (state_->engine_name == "cuda" && !mask.empty()) {
     if (state_->options.engine != "auto") fail("the engine cuda takes no mask; use another one, such as cpu");
+    if (state_->is_shared) {
+      fail("the engine cuda takes no mask, and set_device_options has asked for a device; use the engine cpu");
+    }
     PipelineOptions on_host = state_->options;
     on_host.engine = "cpu";
     state_->stages = make_stages(on_host.engine, on_host, state_->calibration);
     state_->engine_name = on_host.engine;
-    state_->has_frame = state_->has_maps = false;
+    state_->has_frame = state_->has_maps = state_->has_profile = false;
   }
   state_->mask.resize(mask.width(), mask.height());
   for (int v = 0; v < mask.height(); ++v) std::copy_n(mask.row(v), mask.width(), state_->mask.row(v));
@@ -163,7 +175,8 @@ void Pipeline::set_white_level(double level) {
 
 void Pipeline::set_device_options(const DeviceOptions& use) {
   state_->stages->set_device_options(use);
-  state_->has_frame = false;
+  state_->is_shared = use.stream != nullptr || !use.download || use.timing != DeviceTiming::none;
+  state_->has_frame = state_->has_profile = false;
 }
 
 DeviceMaps Pipeline::device_maps() const {
@@ -174,7 +187,8 @@ DeviceMaps Pipeline::device_maps() const {
 
 DeviceProfile Pipeline::device_profile() const {
   DeviceProfile profile = state_->stages->device_profile();
-  if (!state_->has_maps) fail("no frame was processed yet, or the last one was refused or forgotten");
+  if (!state_->has_profile)
+    fail("no frame was processed yet with this timing, or the last one was refused or forgotten");
   return profile;
 }
 

@@ -28,6 +28,8 @@ struct Pipeline::State {
   int width = 0, height = 0;  ///< of the frame, pixels
   bool has_frame = false;     ///< whether `result` belongs to one frame, whole
   bool has_maps = false;      ///< whether the maps that a device keeps do
+  bool has_profile = false;   ///< whether the kernels that a device has timed do
+  bool is_shared = false;     ///< whether set_device_options asks for more than any engine has
 
   ScratchMemory memory;
   FrameResult result;

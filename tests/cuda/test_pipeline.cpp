@@ -294,6 +294,37 @@ TEST_F(CudaPipeline, FollowingFrameWaitsTwice) {
   }
 }
 
+TEST_F(CudaPipeline, HasNoProfileOfFrameBefore) {
+  const synth::SyntheticPair pair = frame_of("uav", 0, 2);
+  Pipeline pipeline(options_of("fast", "cuda"));
+  pipeline.process(pair.left.view(), pair.right.view());
+  pipeline.set_device_options({.timing = DeviceTiming::kernels});
+  EXPECT_THROW(pipeline.device_profile(), Error);
+  EXPECT_NO_THROW(pipeline.device_maps());
+  pipeline.process(pair.left.view(), pair.right.view());
+  EXPECT_GT(pipeline.device_profile().launches, 0);
+}
+
+TEST_F(CudaPipeline, TakesMaskWithoutSetPixels) {
+  Pipeline pipeline(options_of("fast", "cuda"));
+  EXPECT_NO_THROW(pipeline.set_mask(Image<std::uint8_t>(width, height, 0)));
+  EXPECT_THROW(pipeline.set_mask(Image<std::uint8_t>(width, height, 255)), Error);
+}
+
+TEST_F(CudaPipeline, LeavesDeviceForMaskUnlessShared) {
+  const Image<std::uint8_t> nothing(width, height, 0), everything(width, height, 255);
+  Pipeline automatic(options_of("fast", "auto"));
+  if (automatic.engine_name() != "cuda") GTEST_SKIP() << "auto is cuda on a GPU only";
+  automatic.set_mask(nothing);
+  EXPECT_EQ(automatic.engine_name(), "cuda");
+  automatic.set_device_options({.download = false});
+  EXPECT_THROW(automatic.set_mask(everything), Error);
+  EXPECT_EQ(automatic.engine_name(), "cuda");
+  automatic.set_device_options({});
+  automatic.set_mask(everything);
+  EXPECT_EQ(automatic.engine_name(), "cpu");
+}
+
 /// In noise the weight of the prior follows that of each frame: no reason to wait for what is being matched.
 TEST_F(CudaPipeline, FollowingFrameInNoiseWaitsTwice) {
   synth::SyntheticPair pair = frame_of("uav", 0, 1, 8);

@@ -147,6 +147,17 @@ TEST(Pipeline, FindsRoadBetweenBlackBars) {
   }
 }
 
+TEST(PipelineMask, WithoutSetPixelsIsNone) {
+  const synth::SyntheticPair pair = test::named_pair("demo");
+  const int width = pair.left.width, height = pair.left.height;
+  PipelineOptions options = preset("fast");
+  options.engine = "cpu";
+  Pipeline pipeline(options);
+  pipeline.set_mask(lower_third(width, height));
+  pipeline.set_mask(Image<std::uint8_t>(width, height, 0));
+  EXPECT_TRUE(pipeline.process(pair.left.view(), pair.right.view()).mask.empty());
+}
+
 TEST(PipelineMask, OfAnotherSizeIsRejected) {
   const synth::SyntheticPair pair = test::named_pair("demo");
   PipelineOptions options = preset("fast");
