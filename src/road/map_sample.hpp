@@ -11,7 +11,7 @@ namespace roadstereo {
 inline constexpr int sample_limit = 6000;
 
 /// Residuals of neighbours are not independent: the standard error takes cells of the map as one observation each,
-/// larger than the reach of the refinement (24 pixels) either side.
+/// larger than the reach of the refinement's last pass (24 pixels).
 inline constexpr int cells_per_side = 8;
 
 /// A regular grid of pixels of a map, row by row.
