@@ -389,11 +389,6 @@ TEST(FindDamage, UnitOfUncalibratedMapHasNoEffect) {
   }
 }
 
-TEST(FindDamage, IsIndependentOfThreads) {
-  const DamageMap one = find_damage(damaged().metric(), {}, 1);
-  for (const int threads : {2, 3, 7, 0}) expect_same(one, find_damage(damaged().metric(), {}, threads));
-}
-
 /// A copy of a map within a wider one that is full of nonsense.
 template <class Value>
 struct Padded {

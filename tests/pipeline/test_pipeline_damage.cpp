@@ -61,6 +61,20 @@ TEST(PipelineDamage, FindsPotholeOfMatchedPair) {
   }
 }
 
+TEST(PipelineDamage, ReusedResultIsFresh) {
+  synth::Scene intact = small_scene(2);
+  intact.road.blobs.clear();
+  DamageMap reused = find_damage(damaged().metric());
+  for (const synth::Scene& scene : {small_scene(1), intact, small_scene(3)}) {
+    const synth::SyntheticPair pair = synth::render(scene);
+    Pipeline pipeline(preset("default"), pair.calibration);
+    pipeline.process(pair.left.view(), pair.right.view());
+    pipeline.find_damage(reused);
+    EXPECT_EQ(reused.damages.empty(), scene.road.blobs.empty());
+    expect_same(pipeline.find_damage(), reused);
+  }
+}
+
 TEST(PipelineDamage, SixteenPipelinesInSixteenThreadsMatchOne) {
   const std::vector<synth::SyntheticPair> pairs{synth::render(small_scene(1)), synth::render(small_scene(2))};
   const auto find_in = [&](std::size_t k) {
