@@ -83,6 +83,19 @@ std::vector<Case> cases() {
   MatcherOptions strict;  // what fails the left-right check is invalid
   strict.occlusion_sigma_px = 0;
   all.push_back({"strict_check", 150, 60, 35, strict, true});
+  MatcherOptions loose = strict;
+  loose.lr_max_diff_px = 3;
+  all.push_back({"loose_check", 150, 60, 35, loose, true});
+  MatcherOptions unchecked = strict;
+  unchecked.left_right_check = false;
+  all.push_back({"unchecked", 150, 60, 35, unchecked, true});
+  MatcherOptions whole_pixels = strict;
+  whole_pixels.sub_pixel = false;
+  all.push_back({"whole_pixels", 150, 60, 35, whole_pixels, true});
+  MatcherOptions bounded;  // the truth leaves three disparities, and the ranges
+  bounded.reject_range_boundary = true;
+  all.push_back({"bounded", 150, 60, 3, bounded, true});
+  all.push_back({"bounded_ranges", 290, 131, 40, bounded, true, true});
   MatcherOptions sparse;
   sparse.aggregation_radius = 5;
   sparse.aggregation_step = 2;
@@ -194,7 +207,7 @@ TEST_P(EngineAgreement, WinnerAndSubPixelMatchReference) {
   make_engine("reference", 0)->match(input, setting.options, expected);
   make_engine(std::get<0>(GetParam()), 2)->match(input, setting.options, actual);
 
-  std::size_t candidates = 0, same = 0, target_same = 0, both = 0, variances_differ = 0;
+  std::size_t candidates = 0, same = 0, target_same = 0, both = 0, variances_differ = 0, validities_differ = 0;
   double worst = 0;
   const int step = setting.options.pixel_step;
   ASSERT_EQ(expected.winner.width(), (setting.width + step - 1) / step);
@@ -207,8 +220,10 @@ TEST_P(EngineAgreement, WinnerAndSubPixelMatchReference) {
     for (int u = 0; u < expected.winner.width(); ++u) {
       ++candidates;
       same += expected.winner(u, v) == actual.winner(u, v);
-      if (std::isnan(expected.disparity(u, v)) || std::isnan(actual.disparity(u, v))) continue;
       if (expected.winner(u, v) != actual.winner(u, v)) continue;
+      const bool expected_none = std::isnan(expected.disparity(u, v)), actual_none = std::isnan(actual.disparity(u, v));
+      validities_differ += expected_none != actual_none;
+      if (expected_none || actual_none) continue;
       ++both;
       worst = std::max(worst, std::abs(static_cast<double>(expected.disparity(u, v)) - actual.disparity(u, v)));
       variances_differ += !same_variance(expected.variance(u, v), actual.variance(u, v));
@@ -217,6 +232,7 @@ TEST_P(EngineAgreement, WinnerAndSubPixelMatchReference) {
   // A curvature near 0 has no relative precision in 32 bits.
   EXPECT_LE(static_cast<double>(variances_differ), 0.004 * static_cast<double>(both));
   EXPECT_GE(static_cast<double>(same), 0.999 * static_cast<double>(candidates));
+  EXPECT_LE(static_cast<double>(validities_differ), 0.001 * static_cast<double>(candidates));
   EXPECT_GE(static_cast<double>(target_same), 0.999 * static_cast<double>(expected.target_winner.pixels()));
   EXPECT_LE(worst, 0.01);
   if (setting.disparities >= 7 && setting.width > 100 && !setting.with_ranges) {

@@ -4,7 +4,9 @@
 #include <hwy/highway.h>
 #include <hwy/targets.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "roadstereo/matcher.hpp"
@@ -36,13 +38,17 @@ TEST_P(CpuEngineTarget, MatchesReference) {
     MatchMaps expected, actual;
     make_engine("reference", 0)->match(input, options, expected);
     make_engine("cpu", 2)->match(input, options, actual);
-    std::size_t same = 0, target_same = 0, both = 0;
+    std::size_t same = 0, target_same = 0, both = 0, validities_differ = 0;
     double worst = 0;
     for (int v = 0; v < expected.winner.height(); ++v) {
       for (int u = 0; u < setting.width; ++u) target_same += expected.target_winner(u, v) == actual.target_winner(u, v);
       for (int u = 0; u < expected.winner.width(); ++u) {
         same += expected.winner(u, v) == actual.winner(u, v);
-        if (expected.winner(u, v) != actual.winner(u, v) || std::isnan(expected.disparity(u, v))) continue;
+        if (expected.winner(u, v) != actual.winner(u, v)) continue;
+        const bool expected_none = std::isnan(expected.disparity(u, v));
+        const bool actual_none = std::isnan(actual.disparity(u, v));
+        validities_differ += expected_none != actual_none;
+        if (expected_none || actual_none) continue;
         ++both;
         worst = std::max(worst, std::abs(double{expected.disparity(u, v)} - actual.disparity(u, v)));
       }
@@ -50,6 +56,7 @@ TEST_P(CpuEngineTarget, MatchesReference) {
     const auto pixels = static_cast<double>(expected.winner.pixels());
     EXPECT_GE(static_cast<double>(same), 0.999 * pixels);
     EXPECT_GE(static_cast<double>(target_same), 0.999 * static_cast<double>(expected.target_winner.pixels()));
+    EXPECT_LE(static_cast<double>(validities_differ), 0.001 * pixels);
     EXPECT_GT(static_cast<double>(both), 0.5 * pixels);
     EXPECT_LE(worst, 0.01);
   }
