@@ -80,7 +80,13 @@ TEST(FindDamage, StoneOnReliefIsNoLargerThanItself) {
       lift(u, v, is_stone ? 0.025 : from_middle < 1 ? 0.006 : 0);
     }
   }
-  for (const Damage& damage : find_damage(maps.metric()).damages) EXPECT_LT(damage.pixels, 4U * 36 * 22);
+  DamageOptions options;
+  options.min_confidence = 0;  // 0.42 beside the relief
+  const DamageMap map = find_damage(maps.metric(), options);
+  ASSERT_EQ(map.damages.size(), 1U);
+  EXPECT_EQ(map.damages[0].kind, DamageKind::protrusion);
+  EXPECT_NEAR(map.damages[0].metrics->max_depth_m.value, 0.025, 0.004);
+  EXPECT_LT(map.damages[0].pixels, 4U * 36 * 22);
 }
 
 /// Wrong matches, as snow or dirt make them, do not cost the damage that they lie in.

@@ -32,7 +32,9 @@ TEST(ResolutionLimits, NadirMatchesClosedForm) {
   ResolutionOptions options;
   options.noise_px = 0.04;
   const ResolutionLimits limits(example_rig(), {2.0, 90 * degree}, options);
-  for (const RowResolution& row : limits.rows(5)) {
+  const auto rows = limits.rows(5);
+  ASSERT_EQ(rows.size(), 5U);
+  for (const RowResolution& row : rows) {
     EXPECT_NEAR(row.disparity_px, 30, 1e-9);
     EXPECT_NEAR(row.step_m, 2.0 / 29, 1e-12);
     // √(0.04² + 0.03²) px = 0.05 px; five of them 0.25 px.

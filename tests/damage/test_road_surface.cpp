@@ -107,7 +107,8 @@ struct QuadraticRoad {
     double most = 0;
     for (int j = 0; j < 200; ++j) {
       for (int i = 0; i < 300; ++i) {
-        most = std::max(most, static_cast<double>(std::abs(surface.value(i, j) - truth(i, j))));
+        const auto error = static_cast<double>(std::abs(surface.value(i, j) - truth(i, j)));
+        if (std::isnan(error) || error > most) most = error;
       }
     }
     return most;

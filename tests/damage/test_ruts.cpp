@@ -169,7 +169,9 @@ TEST(FindRuts, NeedsMetres) {
 /// A camera whose picture has the road across it: ruts run along x.
 TEST(FindDamage, FollowsYawOfMount) {
   const Lane lane([](double x, double y) { return rut(y, x, 1.7, 0, 0.7, 0.02); });
-  for (const Damage& dip : find_damage(lane.input()).damages) EXPECT_NE(dip.metrics->distress, Distress::rut);
+  const DamageMap across = find_damage(lane.input());
+  ASSERT_FALSE(across.damages.empty());
+  for (const Damage& dip : across.damages) EXPECT_NE(dip.metrics->distress, Distress::rut);
   for (const double yaw_deg : {90.0, -90.0, 270.0, 75.0}) {
     DamageOptions options;
     options.mount_yaw_deg = yaw_deg;

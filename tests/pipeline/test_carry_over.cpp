@@ -34,7 +34,8 @@ double difference(const DisparityPlane& a, const DisparityPlane& b, const synth:
   double largest = 0;
   for (const double v : {0.0, pair.left.height - 1.0}) {
     for (const double u : {0.0, pair.left.width - 1.0}) {
-      largest = std::max(largest, std::abs(a.disparity(u, v) - b.disparity(u, v)));
+      const double one = std::abs(a.disparity(u, v) - b.disparity(u, v));
+      if (std::isnan(one) || one > largest) largest = one;
     }
   }
   return largest;
@@ -53,6 +54,7 @@ struct Errors {
 };
 
 double largest(const std::vector<double>& values) {
+  EXPECT_TRUE(std::none_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }));
   return *std::max_element(values.begin(), values.end());
 }
 
@@ -255,16 +257,67 @@ synth::SyntheticPair degraded_road(double noise_grey, double row_offset_px) {
   return synth::render(scene);
 }
 
+void expect_same_state(const PipelineState& one, const PipelineState& other) {
+  EXPECT_EQ(one.width, other.width);
+  EXPECT_EQ(one.height, other.height);
+  EXPECT_EQ(one.roll_rad, other.roll_rad);
+  EXPECT_EQ(one.misalignment.rows_px, other.misalignment.rows_px);
+  EXPECT_EQ(one.misalignment.turn_rad, other.misalignment.turn_rad);
+  EXPECT_EQ(one.misalignment.row_scale, other.misalignment.row_scale);
+  EXPECT_EQ(one.misalignment.cx_px, other.misalignment.cx_px);
+  EXPECT_EQ(one.misalignment.cy_px, other.misalignment.cy_px);
+  EXPECT_EQ(one.rows_known, other.rows_known);
+  EXPECT_EQ(one.frames_since_rows, other.frames_since_rows);
+  ASSERT_EQ(one.road.has_value(), other.road.has_value());
+  if (!one.road) return;
+  EXPECT_EQ(one.road->model.a0, other.road->model.a0);
+  EXPECT_EQ(one.road->model.a1, other.road->model.a1);
+  EXPECT_EQ(one.road->model.a2, other.road->model.a2);
+  EXPECT_EQ(one.road->inlier_share, other.road->inlier_share);
+  EXPECT_EQ(one.road->correlation, other.road->correlation);
+  EXPECT_EQ(one.road->samples_are_cells, other.road->samples_are_cells);
+}
+
+/// The small road, or one of another size, seen by a rolled rig whose rows are apart.
+synth::SyntheticPair rolled_road(int image_width) {
+  synth::Scene scene = small_road();
+  scene.rig.focal_px *= static_cast<double>(image_width) / width;
+  scene.rig.height = height * image_width / width;
+  scene.rig.width = image_width;
+  scene.rig.roll_deg = 2;
+  scene.degradation.row_offset_px = 0.5;
+  return synth::render(scene);
+}
+
 /// The rows of a swapped pair are measured before it is known to be one.
 TEST(CarryOver, RefusedFrameLeavesTheState) {
-  const synth::SyntheticPair pair = synth::render(small_road());
+  const synth::SyntheticPair pair = rolled_road(width);
   Pipeline pipeline(preset("default"), pair.calibration);
   for (int frame = 0; frame < 3; ++frame) pipeline.process(pair.left.view(), pair.right.view());
   const PipelineState before = pipeline.carried();
+  ASSERT_TRUE(before.road.has_value());
+  ASSERT_TRUE(before.rows_known);
+  ASSERT_NE(before.misalignment.rows_px, 0);
+  ASSERT_NE(before.roll_rad, 0);
   EXPECT_THROW(pipeline.process(pair.right.view(), pair.left.view()), Error);
-  EXPECT_EQ(pipeline.carried().frames_since_rows, before.frames_since_rows);
-  EXPECT_EQ(pipeline.carried().rows_known, before.rows_known);
-  EXPECT_EQ(pipeline.carried().road.has_value(), before.road.has_value());
+  expect_same_state(pipeline.carried(), before);
+  EXPECT_THROW(pipeline.process(pair.left.view(), pair.left.view()), Error);
+  expect_same_state(pipeline.carried(), before);
+}
+
+/// A narrow frame has fewer disparities than the road is moved by, which is known once its road is: the state of the
+/// wide frames is still there.
+TEST(CarryOver, FrameRefusedForItsSizeLeavesTheState) {
+  const synth::SyntheticPair narrow = rolled_road(width), wide = rolled_road(2 * width);
+  PipelineOptions options = preset("default");
+  options.perspective.delta_p_px = width;
+  Pipeline pipeline(options);
+  pipeline.process(wide.left.view(), wide.right.view());
+  const PipelineState before = pipeline.carried();
+  ASSERT_TRUE(before.road.has_value());
+  ASSERT_EQ(before.width, 2 * width);
+  EXPECT_THROW(pipeline.process(narrow.left.view(), narrow.right.view()), Error);
+  expect_same_state(pipeline.carried(), before);
 }
 
 // Supports are chosen by the noise: it may come in the middle of a recording, and go.

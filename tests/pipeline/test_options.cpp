@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string>
+#include <vector>
+
 #include "roadstereo/error.hpp"
 #include "roadstereo/options.hpp"
 
@@ -97,6 +101,41 @@ TEST(PipelineOptions, WholePixelShiftsNeedNoLucasKanadeStep) {
   EXPECT_THROW(options.validate(), Error);
   options.lucas_kanade.radius = 0;
   EXPECT_NO_THROW(options.validate());
+}
+
+/// What `validate` says after one option was set.
+std::string complaint(const std::string& key, const std::string& value) {
+  PipelineOptions options;
+  set_option(options, key, value);
+  try {
+    options.validate();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+// No number is a value of every option, and few options have values without end.
+TEST(PipelineOptions, EveryNumberHasARange) {
+  const std::set<std::string> without_lowest{"perspective.delta_p_px", "roll.delta_t_px"};
+  const std::set<std::string> without_highest{"refinement.max_sigma_px", "roll.max_roll_stderr_rad",
+                                              "roll.min_gradient_px"};
+  std::size_t reals = 0, wholes = 0;
+  for (const OptionText& option : list_options({})) {
+    const bool is_real = option.kind == OptionKind::real;
+    if (!is_real && option.kind != OptionKind::whole) continue;
+    ++(is_real ? reals : wholes);
+    std::vector<std::string> refused;
+    if (is_real) refused.insert(refused.end(), {"nan", "-nan"});
+    if (without_lowest.count(option.key) == 0) refused.emplace_back("-1000000000");
+    if (without_highest.count(option.key) == 0) refused.emplace_back("1000000000");
+    for (const std::string& value : refused) {
+      EXPECT_NE(complaint(option.key, value).find(option.key), std::string::npos)
+          << option.key << " = " << value << ": " << complaint(option.key, value);
+    }
+  }
+  EXPECT_GE(reals, 45U);
+  EXPECT_GE(wholes, 10U);
 }
 
 TEST(ListOptions, EveryOptionRoundTrips) {

@@ -117,7 +117,10 @@ template <class Disparity>
 double max_difference(const DisparityPlane& plane, const Disparity& d, int left, int right, int top, int bottom) {
   double worst = 0;
   for (const int v : {top, bottom}) {
-    for (const int u : {left, right}) worst = std::max(worst, std::abs(plane.disparity(u, v) - d(u, v)));
+    for (const int u : {left, right}) {
+      const double error = std::abs(plane.disparity(u, v) - d(u, v));
+      if (std::isnan(error) || error > worst) worst = error;
+    }
   }
   return worst;
 }
