@@ -14,6 +14,7 @@ missing=()
 data=$(cached ROADSTEREO_DATA)
 [ -n "$data" ] && [ -d "$data" ] || missing+=(real_data)
 [ -x "$(cached ROADSTEREO_OGRINFO)" ] || missing+=(ogrinfo)
+grep -qs opencv_rgbd "$(cached OpenCV_DIR)/OpenCVModules.cmake" || missing+=(rgbd)
 [ "$(cached GSTREAMER_FOUND)" = 1 ] && compgen -G '/usr/lib/*/gstreamer-1.0/libgstvideotestsrc.so' >/dev/null ||
   missing+=(gstreamer)
 command -v chromedriver >/dev/null && /usr/bin/python3 -c 'import selenium' 2>/dev/null || missing+=(browser)

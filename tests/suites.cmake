@@ -5,6 +5,7 @@
 #   TwoGpus   two_gpus   needs a second GPU
 #   GStreamer gstreamer  needs GStreamer and its base plugins
 #   Ogrinfo   ogrinfo    needs GDAL's own reader
+#   Rgbd      rgbd       needs OpenCV's module rgbd
 #   Slow      slow       lasts too long for every change, or under sanitizers
 #   Threads   threads    is about threads: the thread sanitizer runs it
 #   /cuda     engine_cuda  is that of every engine, with the engine cuda
@@ -13,8 +14,8 @@ cmake_policy(VERSION 3.22)  # CTest sets none
 
 function(roadstereo_labels test labels)
   set(found "")
-  foreach(name_and_label RealData=real_data TwoGpus=two_gpus GStreamer=gstreamer Ogrinfo=ogrinfo Slow=slow
-                         Threads=threads /cuda=engine_cuda OfDevice=engine_cuda)
+  foreach(name_and_label RealData=real_data TwoGpus=two_gpus GStreamer=gstreamer Ogrinfo=ogrinfo Rgbd=rgbd
+                         Slow=slow Threads=threads /cuda=engine_cuda OfDevice=engine_cuda)
     string(REPLACE "=" ";" name_and_label ${name_and_label})
     list(POP_FRONT name_and_label name)
     if(test MATCHES ${name})
