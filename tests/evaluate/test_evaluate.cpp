@@ -124,17 +124,21 @@ TEST_F(SlowEvaluate, SynthComparesEveryMethodInEveryGroup) {
   EXPECT_EQ(document["sub_pixel_phases"]["SGBM"]["mean_error_px"].size(), 20U);
   EXPECT_EQ(document["best_damage"].size(), 8U);
   EXPECT_NE(outcome.out.find("of 8 groups"), std::string::npos);
+  EXPECT_EQ(document["common"].size(), 8U * 7U);
   for (const auto& row : document["common"]) {
     if (row["method"] != "BM") {
       EXPECT_EQ(row["density_percent"], 100) << row;
     }
   }
+  int clean = 0;
   for (const auto& row : document["visible"]) {
     if (row["group"] != "clean" || row["method"] != "default") continue;
+    ++clean;
     // 1.25 times what was measured.
     EXPECT_LE(row["e_p_or_missing_1px_percent"].get<double>(), 1.25 * 0.0297);
     EXPECT_LE(row["e_r_px"].get<double>(), 1.25 * 0.0251);
   }
+  EXPECT_EQ(clean, 1);
   EXPECT_EQ(run("synth --sizes tiny").exit_code, 2);
 }
 
@@ -192,6 +196,7 @@ TEST_F(EvaluateRealData, KittiShowsPublishedTable) {
   EXPECT_EQ(road["mean"], road["frames"]["000007_10"]);  // of one frame
   EXPECT_EQ(road["mean"].size(), 7U);
   const auto row_list = json_file("kitti.json")["road_common"]["mean"];
+  EXPECT_EQ(row_list.size(), 7U);
   for (const auto& row : row_list) {
     if (row["method"] != "BM") {
       EXPECT_EQ(row["density_percent"], 100) << row;
@@ -304,12 +309,16 @@ TEST_F(Evaluate, RuntimeCountsDisparitiesPerSecond) {
   const Outcome outcome = run("runtime --size 160x96 --disparities 16 --runs 1 --json runtime.json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto row_list = json_file("runtime.json")["rows"];
+  int published_rows = 0;
   for (const auto& row : row_list) {
     const bool published = row["method"].get<std::string>().starts_with("published");
+    published_rows += published ? 1 : 0;
     const double evaluations = published ? 695.0 * 361 * 30 : 160.0 * 96 * 16;
     const double per_second = evaluations / row["total_ms"].get<double>() / 1e3;
     EXPECT_NEAR(row["mde_per_s"].get<double>() / per_second, 1, 1e-4) << row["method"];
   }
+  EXPECT_GE(published_rows, 1);
+  EXPECT_GT(static_cast<int>(row_list.size()), published_rows);
 }
 
 TEST_F(EvaluateRealData, RollCorrectionFlattensKittiRoads) {
@@ -318,6 +327,7 @@ TEST_F(EvaluateRealData, RollCorrectionFlattensKittiRoads) {
   const Outcome outcome = run("flatness '" + data->string() + "' --preset fast --json flatness.json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto row_list = json_file("flatness.json")["rows"];
+  EXPECT_GE(row_list.size(), 10U) << "frames";
   for (const auto& row : row_list) {
     // One unknown more fits no worse.
     EXPECT_LE(row["gradient_descent_px"], row["without_roll_px"]) << row;
