@@ -134,9 +134,10 @@ class FlightCommand : public CommandTest {
   }
 
   void wait_for_lines(const std::string& journal, std::size_t least) const {
-    for (int i = 0; i < 20000 && lines_of(read_text(folder_ / journal)).size() < least; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+    const auto is_there = [&] {
+      return std::filesystem::exists(folder_ / journal) && lines_of(read_text(folder_ / journal)).size() >= least;
+    };
+    for (int i = 0; i < 20000 && !is_there(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 
   static int end_of(pid_t child) {
