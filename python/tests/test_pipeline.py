@@ -102,6 +102,15 @@ class Pairs(unittest.TestCase):
         self.assertGreater(turns, 3)
 
 
+class HostMaps(unittest.TestCase):
+    def test_only_cuda_has_device_maps(self):
+        pipeline = roadstereo.Pipeline("fast", engine="cpu")
+        pipeline.process(*pair())
+        for ask in (pipeline.device_maps, pipeline.set_device_options):
+            with self.assertRaisesRegex(roadstereo.Error, "only a pipeline with the engine cuda"):
+                ask()
+
+
 class Module(unittest.TestCase):
     def test_command_line(self):
         self.assertEqual(run("--version"), f"roadstereo {roadstereo.__version__}\n")
