@@ -104,7 +104,7 @@ TEST(PipelineOptions, WholePixelShiftsNeedNoLucasKanadeStep) {
 }
 
 /// What `validate` says after one option was set.
-std::string complaint(const std::string& key, const std::string& value) {
+std::string what_validate_says(const std::string& key, const std::string& value) {
   PipelineOptions options;
   set_option(options, key, value);
   try {
@@ -130,8 +130,8 @@ TEST(PipelineOptions, EveryNumberHasARange) {
     if (without_lowest.count(option.key) == 0) refused.emplace_back("-1000000000");
     if (without_highest.count(option.key) == 0) refused.emplace_back("1000000000");
     for (const std::string& value : refused) {
-      EXPECT_NE(complaint(option.key, value).find(option.key), std::string::npos)
-          << option.key << " = " << value << ": " << complaint(option.key, value);
+      EXPECT_NE(what_validate_says(option.key, value).find(option.key), std::string::npos)
+          << option.key << " = " << value << ": " << what_validate_says(option.key, value);
     }
   }
   EXPECT_GE(reals, 45U);
