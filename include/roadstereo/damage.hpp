@@ -46,8 +46,8 @@ struct DamageOptions {
 struct DamageInput {
   ImageView<const float> transformed;  ///< ℓ', pixels; NaN invalid. Depressions lie below the road, protrusions above
   ImageView<const float> disparity;    ///< ℓ, pixels; required for metric results, with `plane` for slopes of walls
-  ImageView<const float> matched;      ///< what `disparity` was before a rig bias was subtracted from it: where in `right`
-                                       ///< a pixel is found; empty: `disparity` itself
+  ImageView<const float> matched;  ///< what `disparity` was before a rig bias was subtracted from it: where in `right`
+                                   ///< a pixel is found; empty: `disparity` itself
   ImageView<const float> sigma;  ///< standard error of ℓ, pixels; when absent, noise is estimated from `transformed`
   int smoothing_px = 0;          ///< RefinementOptions::smoothing_px of the maps, 0 … 32; tells how far walls spread
   ImageView<const std::int16_t> grey;  ///< left image, 1/16 grey level (`to_grey`); refines outlines at holes
@@ -96,8 +96,8 @@ struct DamageMetrics {
 std::string distress_reason(const DamageMetrics& metrics);
 
 /// Return the severity in words: a class, a range such as "medium–high" where no class has more than half of the
-/// probability, "unresolvable", or "not graded" if there is no table or the area or the depth is uncertain by more than
-/// ±50 %, unless any greater depth has the same severity.
+/// probability, "unresolvable", or "not graded" if there is no table or the area is uncertain by more than
+/// ±50 %.
 std::string severity_text(const DamageMetrics& metrics);
 
 /// Evidence that distinguishes a damage from noise and from objects beside the road. No single value decides.

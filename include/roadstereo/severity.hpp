@@ -27,8 +27,8 @@ enum class Severity {
   unknown,       ///< no calibration, no table with classes for this distress in the scheme, or the depth cannot be
                  ///< trusted
   unresolvable,  ///< neither the largest nor the mean depth is three standard errors of its noise
-  uncertain,     ///< no class has more than half of the probability, or the area or the depth is uncertain by more than
-                 ///< ±50 %
+  uncertain,     ///< no class has more than half of the probability, the area is uncertain by more than ±50 %, or the
+                 ///< depth is a lower bound and a greater one has another class
   minor,         ///< below the table
   low,
   medium,

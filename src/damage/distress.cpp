@@ -49,16 +49,12 @@ Measurement graded_depth(const DamageMetrics& metrics) {
           section_of_parabola * metrics.mean_depth_m.std_error};
 }
 
-bool is_size_known(const DamageMetrics& metrics) {
-  return is_known(metrics.area_m2) && is_known(graded_depth(metrics));
-}
-
 /// The severity of a depth and of all greater ones; `uncertain` if they differ.
 Severity severity_from(double depth_m, const SeverityTable& table, const Measurement& diameter_m) {
   constexpr double deepest = std::numeric_limits<double>::infinity();
   const Severity least = likely_severity(severity_probabilities(table, {depth_m, 0}, diameter_m));
   return least == likely_severity(severity_probabilities(table, {deepest, 0}, diameter_m)) ? least
-                                                                                          : Severity::uncertain;
+                                                                                           : Severity::uncertain;
 }
 
 }  // namespace
@@ -103,10 +99,9 @@ void grade(const SeverityScheme& scheme, const GradedDepth& depth, DamageMetrics
   if (table != nullptr && !table->classes.empty()) {
     const Measurement diameter_m{metrics.diameter_m, 0.5 * metrics.diameter_m * area_error};
     metrics.severity_probabilities = severity_probabilities(*table, graded_depth(metrics), diameter_m);
-    metrics.severity = is_size_known(metrics) ? likely_severity(metrics.severity_probabilities) : Severity::uncertain;
-    if (depth.at_least && is_known(metrics.area_m2)) {
-      metrics.severity = severity_from(graded_depth(metrics).value, *table, diameter_m);
-    }
+    metrics.severity = depth.at_least ? severity_from(graded_depth(metrics).value, *table, diameter_m)
+                                      : likely_severity(metrics.severity_probabilities);
+    if (!is_known(metrics.area_m2)) metrics.severity = Severity::uncertain;
   }
   if (!depth.resolvable) metrics.severity = Severity::unresolvable;
 }
@@ -114,7 +109,7 @@ void grade(const SeverityScheme& scheme, const GradedDepth& depth, DamageMetrics
 std::string severity_text(const DamageMetrics& metrics) {
   if (metrics.severity == Severity::unknown) return "not graded";
   if (metrics.severity != Severity::uncertain) return name_of(metrics.severity);
-  return is_size_known(metrics) ? likely_severity_range(metrics.severity_probabilities) : "not graded";
+  return is_known(metrics.area_m2) ? likely_severity_range(metrics.severity_probabilities) : "not graded";
 }
 
 }  // namespace roadstereo

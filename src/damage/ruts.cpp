@@ -118,8 +118,7 @@ class RutSearch {
 
   std::optional<Rut> rut_around(int deepest) {
     constexpr double max_significance = 1000;  // of maps without noise
-    constexpr double min_width_m = 0.25, max_width_m = 0.85, persistent_share = 0.5,
-                     max_step_share = 0.5;
+    constexpr double min_width_m = 0.25, max_width_m = 0.85, persistent_share = 0.5, max_step_share = 0.5;
     constexpr int min_shoulder_columns = 3;
     const double depth = gap(deepest);
     Rut rut{deepest, deepest + 1, 0, std::min(depth / std_error(deepest), max_significance), {}};
@@ -133,7 +132,8 @@ class RutSearch {
     }
     const double width = profile_bin_m * wide;
     rut.section_m2 = depth * width;
-    if (rut.significance < min_rut_sigmas || depth > max_depth_m || width < min_width_m || width > max_width_m) return {};
+    if (rut.significance < min_rut_sigmas || depth > max_depth_m || width < min_width_m || width > max_width_m)
+      return {};
     const Shoulder left = shoulder(rut.first - 1, -1, depth), right = shoulder(rut.end, 1, depth);
     if (std::min(left.size, right.size) < min_shoulder_columns) return {};
     if (std::abs(step_between(left, right)) > max_step_share * depth) return {};

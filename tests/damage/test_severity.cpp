@@ -86,9 +86,12 @@ TEST(Grade, NeedsMajorityAndKnownSize) {
   grade(astm_d6433(), {true}, metrics);
   EXPECT_EQ(metrics.severity, Severity::uncertain) << "an area known to ±98 %";
   EXPECT_EQ(severity_text(metrics), "not graded");
-  metrics = pothole(0.128, 0.144, 0.07, 0.001);
+  // Known to ±59 %, but potholes 500 mm wide are high from 25 mm on: Φ((25 − 82) / 48) = 0.1175.
+  metrics = pothole(0.082, 0.048, 0.2, 0.001);
+  metrics.diameter_m = 0.5;
   grade(astm_d6433(), {true}, metrics);
-  EXPECT_EQ(severity_text(metrics), "not graded") << "a depth known to ±112 %";
+  EXPECT_NEAR(metrics.severity_probabilities.high, 1 - 0.1175, 1e-3);
+  EXPECT_EQ(severity_text(metrics), "high");
   EXPECT_EQ(metrics.unit, DistressUnit::count);
   EXPECT_EQ(metrics.quantity, 1);
   grade(astm_d6433(), {false}, metrics);
