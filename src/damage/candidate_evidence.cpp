@@ -120,9 +120,11 @@ double floor_cells(std::span<const float> depths, double around, double floor) {
   return cells;
 }
 
-/// Significance of the rut that a region lies in, times the share of its cells that do.
-double rut_significance(const BoxMask& region, std::size_t size, const Ruts& ruts) {
-  if (ruts.empty()) return 0;
+/// Find the share of a region that lies in a rut, and the significance of that rut times the share.
+void measure_ruts(const Ruts& ruts, Candidate& candidate) {
+  const BoxMask& region = candidate.cells;
+  candidate.rut_share = candidate.evidence.rut_significance = 0;
+  if (ruts.empty()) return;
   std::vector<std::size_t> counts(ruts.significances.size() + 1, 0);
   const CellBox& box = region.box();
   for (int j = box.first_row; j <= box.last_row; ++j) {
@@ -130,11 +132,12 @@ double rut_significance(const BoxMask& region, std::size_t size, const Ruts& rut
       if (region(i, j)) ++counts[ruts.labels(i, j)];
     }
   }
-  double most = 0;
   for (std::size_t k = 1; k < counts.size(); ++k) {
-    most = std::max(most, ruts.significances[k - 1] * static_cast<double>(counts[k]) / static_cast<double>(size));
+    const double share = static_cast<double>(counts[k]) / static_cast<double>(candidate.size);
+    candidate.rut_share = std::max(candidate.rut_share, share);
+    candidate.evidence.rut_significance =
+        std::max(candidate.evidence.rut_significance, ruts.significances[k - 1] * share);
   }
-  return most;
 }
 
 }  // namespace
@@ -166,9 +169,7 @@ void add_evidence(const SearchInput& input, SearchImages& images, Candidate& can
   evidence.significance = evidence.contrast_sigmas * std::sqrt(std::max(1.0, samples));
   evidence.road_share = road_share(input, candidate, binned_median(inside), images);
   measure_border(candidate.cells, input.view, input.gaps.unseen, evidence);
-  if (candidate.kind == DamageKind::depression) {
-    evidence.rut_significance = rut_significance(candidate.cells, candidate.size, input.ruts);
-  }
+  if (candidate.kind == DamageKind::depression) measure_ruts(input.ruts, candidate);
 }
 
 double confidence_at_best(const Candidate& candidate, const Thresholds& thresholds) {

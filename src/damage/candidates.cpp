@@ -106,7 +106,7 @@ void add_potholes_of_rut(const SearchInput& input, float min_cells, SearchImages
     Candidate pothole = segment(in_rut, {core}, rut.kind, images);
     if (static_cast<float>(pothole.size) < min_cells || !is_measured(pothole, input.depth_cells.valid)) continue;
     add_evidence(in_rut, images, pothole);
-    pothole.evidence.rut_significance = 0;
+    pothole.evidence.rut_significance = pothole.rut_share = 0;  // the rut is road
     if (confidence_at_best(pothole, input.thresholds) < even_if_confirmed) continue;
     pothole.inside = inside_rim(in_rut, images, pothole);
     assign(pothole, assigned);
@@ -251,7 +251,7 @@ class KindSearch {
   }
 
   void add(const ConnectedComponent& core, Candidate candidate, std::vector<Candidate>& found) {
-    if (lies_in_rut(candidate.evidence)) {
+    if (candidate.lies_in_rut()) {
       const float min_cells = min_cells_at(core, input_.thresholds);
       SearchImages images = images_of(0);
       add_potholes_of_rut(input_, min_cells, images, assigned_, candidate, found);

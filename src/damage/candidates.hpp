@@ -27,9 +27,11 @@ struct Candidate {
   BoxMask inside;        ///< those inside its rim, `inside_rim`; empty: all
   std::size_t size = 0;  ///< cells
   float level = 0;       ///< depth at the outline, pixels of ℓ'
+  double rut_share = 0;  ///< of the cells that lie in one rut
   DamageEvidence evidence;
 
   const CellBox& box() const { return cells.box(); }
+  bool lies_in_rut() const { return rut_share >= 0.5; }
 };
 
 /// Find candidates: connected components deeper than the thresholds (cores), extended to their outlines, with the

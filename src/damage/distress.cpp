@@ -72,7 +72,7 @@ Distress classify_distress(const Damage& damage, const DamageMetrics& metrics, d
     return object ? Distress::debris : Distress::bump;
   }
   const bool long_one = elongation(metrics) >= min_elongation;
-  const bool in_rut = lies_in_rut(damage.evidence) && metrics.length_m > max_object_m;
+  const bool in_rut = damage.evidence.rut_significance >= 0.5 * min_rut_sigmas && metrics.length_m > max_object_m;
   const bool along = (long_one || in_rut) && is_along_road(metrics, mount_yaw_deg);
   if (gentle) return along ? Distress::rut : Distress::depression;
   if (long_one && metrics.area_m2.value < min_pothole_m * metrics.length_m) return Distress::crack;

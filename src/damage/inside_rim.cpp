@@ -79,7 +79,7 @@ bool keep_largest_part(const BoxMask& within, BoxMask& region) {
 }  // namespace
 
 BoxMask inside_rim(const SearchInput& input, const SearchImages& images, const Candidate& candidate) {
-  if (!input.thresholds.metric() || lies_in_rut(candidate.evidence)) return {};
+  if (!input.thresholds.metric() || candidate.lies_in_rut()) return {};
   BoxMask inside = candidate.cells;
   const float floor = floor_of(depths_inside(images, candidate));
   if (!peel_to_rim(images.depth, floor, input.depth_cells.smoothing, inside)) return {};

@@ -66,7 +66,7 @@ void leave_terrace(const SearchInput& input, float min_cells, SearchImages& imag
   const std::vector<float> depths = depths_inside(images, candidate);
   const float floor = deepest_floor(depths, input.image_edges.window_radius), first = candidate.level;
   const float last = likelier_level_share * floor;
-  if (lies_in_rut(candidate.evidence) || last <= first || !is_mostly_terrace(depths, floor)) return;
+  if (candidate.lies_in_rut() || last <= first || !is_mostly_terrace(depths, floor)) return;
   std::optional<Candidate> best;
   double confidence = 0;
   for (int k = 1; k <= levels; ++k) {

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "damage/road_surface.hpp"
-#include "roadstereo/damage.hpp"
 
 namespace roadstereo {
 
@@ -22,11 +21,6 @@ struct Ruts {
   /// Set the cells of all ruts.
   void fill(std::uint8_t value, Image<std::uint8_t>& mask) const;
 };
-
-/// Whether a region lies in a rut: as surely as half of it would in the shallowest one.
-inline bool lies_in_rut(const DamageEvidence& evidence) {
-  return evidence.rut_significance >= 0.5 * min_rut_sigmas;
-}
 
 /// Find ruts; none without metric coordinates. Ruts continue along the road, and a pair of wheel tracks covers half of
 /// a lane, so that a robust fit does not treat them as outliers: the surface of the road must be fitted without them.

@@ -215,22 +215,6 @@ TEST(FindDamage, MeasuresWheelTracks) {
   EXPECT_LT(map.noise_px, 0.05);
 }
 
-/// A pothole whose side touches a wheel track is measured as one on level road.
-TEST(FindDamage, PotholeBesideRutEndsAtItsRim) {
-  const auto pothole = [](double x, double y) {
-    return -0.06 * std::clamp((0.2 - std::hypot(x - 0.34, y - 1.7)) / 0.03, 0.0, 1.0);
-  };
-  const auto area_of = [](const Lane& lane) {
-    for (const Damage& damage : find_damage(lane.input()).damages) {
-      if (damage.metrics->distress == Distress::pothole) return damage.metrics->area_m2.value;
-    }
-    return 0.0;
-  };
-  const double alone_m2 = area_of(Lane(pothole));
-  EXPECT_NEAR(alone_m2, std::numbers::pi * 0.185 * 0.185, 0.012);
-  EXPECT_NEAR(area_of(Lane([&](double x, double y) { return wheel_tracks(x, y) + pothole(x, y); })), alone_m2, 0.012);
-}
-
 /// Wheels go on where a track has a hole: both are listed, each with its own depth.
 TEST(FindDamage, SeparatesPotholeFromRut) {
   const Lane lane([](double x, double y) {
