@@ -201,7 +201,7 @@ void vote_lanes(const DamageInput& input, int v, std::span<const int> u, std::sp
 
 void vote_for_blocks(const DamageInput& input, int v, std::span<const int> u, std::span<const float> surface,
                      std::span<float> votes) {
-  std::fill(votes.begin(), votes.end(), unknown);
+  std::fill(votes.begin(), votes.end(), 0.0F);
   if (v < block_radius || v + block_radius >= input.grey.height()) return;
   if (input.grey.width() <= 2 * block_radius) return;
   for (std::size_t first = 0; first < u.size(); first += max_lanes) vote_lanes(input, v, u, surface, first, votes);

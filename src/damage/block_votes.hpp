@@ -20,7 +20,7 @@ inline bool has_blocks(const DamageInput& input) {
 }
 
 /// Votes of the blocks around the pixels `u` of row v: log of the likelihood ratio of the measured surface to the road
-/// at `surface`, from their correlations, truncated and scaled to [−1, 1]; NaN if either is unknown.
+/// at `surface`, from their correlations, truncated and scaled to [−1, 1]; 0 if either is unknown.
 void vote_for_blocks(const DamageInput& input, int v, std::span<const int> u, std::span<const float> surface,
                      std::span<float> votes);
 

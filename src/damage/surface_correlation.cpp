@@ -32,7 +32,7 @@ struct RowOfBlocks {
   }
 };
 
-/// Sums of votes, and of the blocks that have one.
+/// Sums of votes, and of the blocks that are asked; one without contrast or disparities votes for neither.
 struct VoteSums {
   double votes = 0, blocks = 0;
 
@@ -87,8 +87,8 @@ class VoteIntegral {
     VoteSums sum;
     std::size_t next = 0;
     for (int k = 0; k < blocks_before(columns_); ++k) {
-      const float vote = sums[k].blocks > 0 ? row.votes[next++] : 0.0F;
-      sums[k] = sum += std::isnan(vote) ? VoteSums{} : VoteSums{double{vote}, sums[k].blocks};
+      if (sums[k].blocks > 0) sums[k].votes = double{row.votes[next++]};
+      sums[k] = sum += sums[k];
     }
   }
 
@@ -112,11 +112,8 @@ double surface_significance(const DamageInput& input, const DamageMap& maps, int
       if (maps.ids(u, v) == id) row.add(u, maps.surface(u, v) + static_cast<float>(offset));
     }
     row.vote(input, v);
-    for (const float vote : row.votes) {
-      if (std::isnan(vote)) continue;
-      votes += vote;
-      ++blocks;
-    }
+    for (const float vote : row.votes) votes += vote;
+    blocks += static_cast<double>(row.votes.size());
   }
   const double independent =
       blocks * std::min(1.0, static_cast<double>(step * step) / static_cast<double>(block_pixels));
