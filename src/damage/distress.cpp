@@ -49,12 +49,14 @@ Measurement graded_depth(const DamageMetrics& metrics) {
           section_of_parabola * metrics.mean_depth_m.std_error};
 }
 
-/// The severity of a depth and of all greater ones; `uncertain` if they differ.
-Severity severity_from(double depth_m, const SeverityTable& table, const Measurement& diameter_m) {
+/// Probabilities of a damage that is at least so deep: half at that depth, half beyond all limits, so that a class has
+/// the majority only if it has it at both.
+SeverityProbabilities probabilities_from(double depth_m, const SeverityTable& table, const Measurement& diameter_m) {
   constexpr double deepest = std::numeric_limits<double>::infinity();
-  const Severity least = likely_severity(severity_probabilities(table, {depth_m, 0}, diameter_m));
-  return least == likely_severity(severity_probabilities(table, {deepest, 0}, diameter_m)) ? least
-                                                                                           : Severity::uncertain;
+  const SeverityProbabilities least = severity_probabilities(table, {depth_m, 0}, diameter_m);
+  const SeverityProbabilities most = severity_probabilities(table, {deepest, 0}, diameter_m);
+  return {0.5 * (least.minor + most.minor), 0.5 * (least.low + most.low), 0.5 * (least.medium + most.medium),
+          0.5 * (least.high + most.high)};
 }
 
 }  // namespace
@@ -98,9 +100,10 @@ void grade(const SeverityScheme& scheme, const GradedDepth& depth, DamageMetrics
   const double area_error = metrics.area_m2.std_error / metrics.area_m2.value;
   if (table != nullptr && !table->classes.empty()) {
     const Measurement diameter_m{metrics.diameter_m, 0.5 * metrics.diameter_m * area_error};
-    metrics.severity_probabilities = severity_probabilities(*table, graded_depth(metrics), diameter_m);
-    metrics.severity = depth.at_least ? severity_from(graded_depth(metrics).value, *table, diameter_m)
-                                      : likely_severity(metrics.severity_probabilities);
+    metrics.severity_probabilities = depth.at_least
+                                         ? probabilities_from(graded_depth(metrics).value, *table, diameter_m)
+                                         : severity_probabilities(*table, graded_depth(metrics), diameter_m);
+    metrics.severity = likely_severity(metrics.severity_probabilities);
     if (!is_known(metrics.area_m2)) metrics.severity = Severity::uncertain;
   }
   if (!depth.resolvable) metrics.severity = Severity::unresolvable;

@@ -103,6 +103,7 @@ TEST(Grade, LowerBoundHasTheSeverityOfAllThatIsDeeper) {
   DamageMetrics metrics = pothole(0.02, 0.02, 0.07, 0.001);
   grade(astm_d6433(), {true, true}, metrics);
   EXPECT_EQ(metrics.severity, Severity::uncertain) << "low, but medium if it is deeper than 25 mm";
+  EXPECT_EQ(severity_text(metrics), "low–medium");
   metrics = pothole(0.1, 0.1, 0.07, 0.001);
   grade(astm_d6433(), {true, true}, metrics);
   EXPECT_EQ(metrics.severity, Severity::medium);
