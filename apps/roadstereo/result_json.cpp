@@ -72,6 +72,13 @@ Json rows_json(const RowAlignment& rows, const Misalignment& undone) {
             {"row_scale", json_number(undone.row_scale)}}}};
 }
 
+Json blur_json(const FrameResult& result) {
+  const bool known = result.blur.known();
+  return {{"difference_px2", known ? json_number(result.blur.variance_px2) : Json(nullptr)},
+          {"stderr_px2", known ? json_number(result.blur.stderr_px2) : Json(nullptr)},
+          {"smoothed_px2", json_number(result.smoothed_px2)}};
+}
+
 Json times_json(const StageTimes& ms) {
   return {{"prepare", json_number(ms.prepare)},
           {"road_model", json_number(ms.road_model)},
@@ -133,6 +140,7 @@ std::string result_json(const Inspection& inspection) {
   document["damages"] = inspection.damage.damages.size();  // each is in damages.json
   document["road_noise_px"] = json_number(inspection.damage.noise_px);
   document["rows"] = rows_json(result.rows, result.shift.misalignment);
+  document["blur"] = blur_json(result);
   document["health"] = health_json(inspection.health);
   document["road"] = estimate_json(result.road);
   document["ms"] = times_json(result.ms);

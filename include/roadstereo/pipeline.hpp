@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "roadstereo/alignment.hpp"
+#include "roadstereo/blur_difference.hpp"
 #include "roadstereo/calibration.hpp"
 #include "roadstereo/coarse_search.hpp"
 #include "roadstereo/damage.hpp"
@@ -39,6 +40,8 @@ struct PipelineOptions {
                               ///< tracking, and on a tracked road every 100 frames, or every 10 while the alignment
                               ///< is unknown
   bool correct_rows = true;   ///< undo the misalignment, up to 8 px, that `check_rows` has measured
+  bool equalise_blur = true;  ///< smooth the sharper image of a pair of which one is blurred more, by defocus: measured
+                              ///< whenever the road is searched without tracking, and every 100 frames
   bool narrow_search = true;  ///< search each tile only near the disparities that the coarse search finds there
   RoadModelOptions road_model;
   PerspectiveOptions perspective;
@@ -77,7 +80,7 @@ struct StageTimes {
 
 /// Result for one pair. All maps have the size of the images.
 struct FrameResult {
-  GreyImage grey;            ///< the left image; deblocked (PipelineOptions::deblock), as is the right one
+  GreyImage grey;            ///< the left image; deblocked and smoothed by `smoothed_px2`, as is the right one
   GreyImage right;           ///< the right image; misaligned by `shift.misalignment`
   Image<float> disparity;    ///< ℓ: left-image disparities, pixels, NaN invalid
   Image<float> sigma;        ///< standard error of `disparity`, pixels, NaN where that is invalid
@@ -95,7 +98,10 @@ struct FrameResult {
   /// Excess of the steps between blocks of 8×8 pixels (JPEG) over those beside them, relative, of the left and the
   /// right image before `deblock`; NaN if not measured.
   std::array<double, 2> block_steps{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
-  RowAlignment rows;  ///< `points` is 0 if it was not measured for this frame (PipelineOptions::check_rows)
+  RowAlignment rows;        ///< `points` is 0 if it was not measured for this frame (PipelineOptions::check_rows)
+  BlurDifference blur;      ///< `windows` is 0 if it was not measured for this frame (PipelineOptions::equalise_blur)
+  double smoothed_px2 = 0;  ///< variance of the Gaussian with which one image was smoothed, pixels²: the left one if it
+                            ///< is positive, the right one if it is negative, neither if it is 0
   StageTimes ms;
   double mde_per_s = 0;  ///< millions of disparity evaluations per second: W·H·D / total time
   std::vector<std::string> warnings;
@@ -112,6 +118,8 @@ struct PipelineState {
   Misalignment misalignment;        ///< of the target, as last measured; zero where it is none, or unknown
   bool rows_known = false;          ///< whether `misalignment` was measured
   int frames_since_rows = 0;        ///< frames since the last attempt to measure the rows
+  double blur_px2 = 0;              ///< BlurDifference::variance_px2 that is equalised; 0: none
+  int frames_since_blur = 0;        ///< frames since the last attempt to measure it
 
   /// Throws Error naming the first value that is out of range for frames of this size.
   void validate() const;

@@ -8,6 +8,7 @@ Images are numpy arrays (H, W), row-major; units are part of a name; NaN is inva
 """
 
 from ._roadstereo import (
+    BlurDifference,
     Calibration,
     Damage,
     DamageEvidence,
@@ -56,6 +57,7 @@ from ._roadstereo import (
 )
 
 __all__ = [
+    "BlurDifference",
     "Calibration",
     "Damage",
     "DamageEvidence",

@@ -76,6 +76,10 @@ void bind_geometry(py::module_& module) {
       .field("sigma_road_px", &RoadResiduals::sigma_road_px, "σ_d of the road, pixels.")
       .field("sigma_all_px", &RoadResiduals::sigma_all_px, "σ_d of all valid pixels, pixels.")
       .field("road_share", &RoadResiduals::road_share, "Share of the valid pixels that count as road, 0 … 1.");
+  Record<BlurDifference>(module, "BlurDifference", "How much more the right image is blurred than the left one.")
+      .field("variance_px2", &BlurDifference::variance_px2, "Difference of the variances of two Gaussians, pixels².")
+      .field("stderr_px2", &BlurDifference::stderr_px2, "Its standard error, pixels².")
+      .field("windows", &BlurDifference::windows, "Windows that were compared; 0: unknown.");
   Record<RowAlignment>(module, "RowAlignment", "Vertical offset of the matched points of a pair.")
       .field("median_px", &RowAlignment::median_px, "Median of right minus left row, pixels.")
       .field("sigma_px", &RowAlignment::sigma_px, "Robust standard deviation, pixels.")
@@ -163,6 +167,10 @@ void add_values(py::class_<ProcessedFrame>& type) {
   type.def_property_readonly("shift", value_of<&FrameResult::shift>, "Shift of the perspective transformation.");
   type.def_property_readonly("spread", value_of<&FrameResult::spread>, "Standard deviations of `transformed`.");
   type.def_property_readonly("rows", value_of<&FrameResult::rows>, "Vertical offset of the pair.");
+  type.def_property_readonly("blur", value_of<&FrameResult::blur>, "Difference of the blur of the pair.");
+  type.def_property_readonly("smoothed_px2", value_of<&FrameResult::smoothed_px2>,
+                             "Variance of the Gaussian with which the left image was smoothed, or, if negative, the "
+                             "right one, pixels².");
   type.def_property_readonly("ms", value_of<&FrameResult::ms>, "Times of the stages, milliseconds.");
   type.def_property_readonly("warnings", value_of<&FrameResult::warnings>,
                              "What is wrong with the pair, as sentences.");

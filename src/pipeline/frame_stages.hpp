@@ -67,6 +67,8 @@ class FrameStages {
   virtual GreyPair convert_to_grey(const FrameView& left, const FrameView& right, double white_level) = 0;
   /// The pair in host memory.
   virtual GreyPair on_host(const GreyPair& pair) = 0;
+  /// Smooths the left image of the pair in place, with a Gaussian of that variance, or the right one if it is negative.
+  virtual GreyPair smooth(const GreyPair& pair, double variance_px2) = 0;
   /// transform_target without a road: the pair without the target's misalignment, valid until `transform_perspective`.
   virtual GreyPair undo_misalignment(const GreyPair& pair, const Misalignment& misalignment) = 0;
   /// verify_road_model.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/deblocking.hpp"
+#include "core/gaussian_smoothing.hpp"
 #include "core/grey_weights.hpp"
 #include "core/parallel.hpp"
 #include "pipeline/pair_checks.hpp"
@@ -73,6 +74,13 @@ class HostStages final : public FrameStages {
   }
 
   GreyPair on_host(const GreyPair& pair) override { return pair; }
+
+  GreyPair smooth(const GreyPair&, double variance_px2) override {
+    GreyImage& sharper = variance_px2 > 0 ? left_ : right_;
+    transformed_target_.resize(sharper.width(), sharper.height());
+    smooth_image(smoothing_kernel(std::abs(variance_px2)), threads_, sharper.view(), transformed_target_.view());
+    return {left_, right_};
+  }
 
   GreyPair undo_misalignment(const GreyPair& pair, const Misalignment& misalignment) override {
     transform_target(pair.right, without_road(misalignment), threads_, transformed_target_, first_column_);

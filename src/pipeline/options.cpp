@@ -52,6 +52,7 @@ void visit_options(Options& o, Visitor visit) {
   visit("check_rows", o.check_rows, "measure whether the rows of the pair agree");
   visit("correct_rows", o.correct_rows,
         "undo the vertical shift, rotation and row scale of the right image that check_rows measures");
+  visit("equalise_blur", o.equalise_blur, "smooth the sharper image of a pair of which one is blurred more");
   visit("narrow_search", o.narrow_search, "search each tile only near what the coarse search finds there");
 
   visit("road_model.with_roll", o.road_model.with_roll, "the model depends on the column too (a2)");

@@ -167,6 +167,15 @@ double blur_of(Grey image, const DamageMap& damage) {
   return blur;
 }
 
+/// The blur of the image that was smoothed, before: that of the other one less the difference.
+void undo_smoothing(double smoothed_px2, PairHealth& health) {
+  if (smoothed_px2 == 0) return;
+  const bool is_left = smoothed_px2 > 0;
+  const double blur_px = is_left ? health.blur_right_px : health.blur_left_px;
+  const double before_px2 = blur_px * blur_px - std::abs(smoothed_px2);
+  (is_left ? health.blur_left_px : health.blur_right_px) = before_px2 < 0 ? 0 : std::sqrt(before_px2);
+}
+
 constexpr int noise_block_radius = 3;
 
 /// Immerkær's mask, which takes away planes of grey levels; its coefficients squared sum to 36.
@@ -247,6 +256,7 @@ void measure_pictures(const FrameResult& frame, const DamageMap& damage, int thr
         health.blocks_right = block_steps(frame.block_steps[1], frame.right);
     }
   });
+  undo_smoothing(frame.smoothed_px2, health);
 }
 
 }  // namespace roadstereo

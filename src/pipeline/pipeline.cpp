@@ -56,7 +56,7 @@ void Pipeline::State::begin_frame(const FrameView& left, const FrameView& right)
 }
 
 void Pipeline::State::run_stages(const FrameView& left, const FrameView& right) {
-  const GreyPair pair = convert_to_grey(left, right);
+  const GreyPair pair = equalise_blur(convert_to_grey(left, right));
   estimate_road_model(pair);
   const MatchInput transformed = transform_perspective(pair);
   const MatchInput input = search_coarsely(transformed);
@@ -79,6 +79,7 @@ void Pipeline::State::end_frame() {
   result.mask = mask;
   result.rig_bias = options.rig_bias;
   if (options.check_rows) ++carried.frames_since_rows;
+  if (options.equalise_blur) ++carried.frames_since_blur;
   carried.road.reset();
   if (result.road.has_road()) {
     carried.road = TrackedRoad{result.road.model, result.road.inlier_share, result.road.correlation,

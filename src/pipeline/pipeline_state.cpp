@@ -19,6 +19,8 @@ void PipelineState::validate() const {
   }
   require_range("state", "roll_rad", roll_rad, -full_turn_rad, full_turn_rad);
   require_range("state", "frames_since_rows", frames_since_rows, 0, std::numeric_limits<int>::max());
+  require_range("state", "blur_px2", blur_px2, -BlurDifference::max_px2, BlurDifference::max_px2);
+  require_range("state", "frames_since_blur", frames_since_blur, 0, std::numeric_limits<int>::max());
   require_range("misalignment", "largest_px", misalignment.largest_px(width, height), 0.0, Misalignment::max_px);
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/format_message.hpp"
 #include "core/noise_correlation.hpp"
+#include "pipeline/blur_correction.hpp"
 #include "road/rig_prior.hpp"
 #include "road/road_assessment.hpp"
 #include "road/row_shift.hpp"
@@ -18,6 +19,25 @@ GreyPair Pipeline::State::convert_to_grey(const FrameView& left, const FrameView
   GreyPair pair = stages->convert_to_grey(left, right, options.white_level);
   pair.mask = mask;
   return pair;
+}
+
+/// The pair with equal blur: at an edge that one lens blurs more, such as a shadow's, blocks on either side of it would
+/// match with errors of opposite sign.
+GreyPair Pipeline::State::equalise_blur(const GreyPair& pair) {
+  result.blur = {};
+  result.smoothed_px2 = 0;
+  if (!options.equalise_blur) return pair;
+  const StageTimer timer(result.ms.prepare);
+  if (blur_is_due(carried)) {
+    const GreyPair on_host = stages->on_host(pair);
+    result.blur = measure_blur_difference(on_host.left, on_host.right, threads, mask);
+    update_blur(result.blur, carried);
+  }
+  result.smoothed_px2 = carried.blur_px2;
+  if (carried.blur_px2 == 0) return pair;
+  GreyPair equal = stages->smooth(pair, carried.blur_px2);
+  equal.mask = pair.mask;
+  return equal;
 }
 
 /// The pair with aligned rows, for the road model: at an edge along the rows, an offset of the rows becomes a disparity

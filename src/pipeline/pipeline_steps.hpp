@@ -39,6 +39,7 @@ struct Pipeline::State {
 
   void begin_frame(const FrameView& left, const FrameView& right);
   GreyPair convert_to_grey(const FrameView& left, const FrameView& right);
+  GreyPair equalise_blur(const GreyPair& pair);
   GreyPair undo_misalignment(const GreyPair& pair);
   GreyPair align_on_host(const GreyPair& pair);
   void warn_of_negative_disparities();

@@ -18,6 +18,7 @@ PipelineOptions paper_preset() {
   options.matcher.pixel_step = 1;
   options.matcher.block_radius = 5;  // 120-connected system
   options.deblock = false;
+  options.equalise_blur = false;
   options.matcher.block_aspect = 1;
   options.matcher.aggregation_radius = 5;
   options.matcher.aggregation_aspect = 1;

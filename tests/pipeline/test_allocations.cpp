@@ -137,14 +137,14 @@ TEST_P(PresetAllocations, NoneAfterFirstFrames) {
     std::size_t before = allocations()->count;
     process();
     EXPECT_EQ(allocations()->count - before, 0U) << threads << " threads";
-    // The rows of a tracked road are measured again now and then.
+    // The rows of a tracked road and the blur are measured again now and then.
     PipelineState due = pipeline.carried();
-    due.frames_since_rows = 1000;
+    due.frames_since_rows = due.frames_since_blur = 1000;
     pipeline.restore(due);
     before = allocations()->count;
     process();
     EXPECT_LT(pipeline.carried().frames_since_rows, 1000);
-    EXPECT_EQ(allocations()->count - before, 0U) << threads << " threads, rows measured";
+    EXPECT_EQ(allocations()->count - before, 0U) << threads << " threads, rows and blur measured";
   }
 }
 

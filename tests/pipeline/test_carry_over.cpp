@@ -268,6 +268,8 @@ void expect_same_state(const PipelineState& one, const PipelineState& other) {
   EXPECT_EQ(one.misalignment.cy_px, other.misalignment.cy_px);
   EXPECT_EQ(one.rows_known, other.rows_known);
   EXPECT_EQ(one.frames_since_rows, other.frames_since_rows);
+  EXPECT_EQ(one.blur_px2, other.blur_px2);
+  EXPECT_EQ(one.frames_since_blur, other.frames_since_blur);
   ASSERT_EQ(one.road.has_value(), other.road.has_value());
   if (!one.road) return;
   EXPECT_EQ(one.road->model.a0, other.road->model.a0);

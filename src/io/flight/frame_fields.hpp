@@ -45,6 +45,8 @@ void each_field(PipelineState& state, Visit& visit) {
   visit("misalignment", state.misalignment);
   visit("rows_known", state.rows_known);
   visit("frames_since_rows", state.frames_since_rows);
+  visit("blur_px2", state.blur_px2);
+  visit("frames_since_blur", state.frames_since_blur);
 }
 
 template <class Visit>

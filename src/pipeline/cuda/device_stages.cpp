@@ -1,9 +1,11 @@
 #include "pipeline/cuda/device_stages.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/cuda/deblocking.hpp"
 #include "core/cuda/device.hpp"
+#include "core/cuda/gaussian_smoothing.hpp"
 #include "core/cuda/grey.hpp"
 #include "pipeline/cuda/frame_maps.hpp"
 #include "pipeline/cuda/frame_upload.hpp"
@@ -84,6 +86,12 @@ class DeviceStages final : public FrameStages {
     copy_to_host(pair.right, right_on_host_);
     wait_for_pair();
     return {left_on_host_, right_on_host_};
+  }
+
+  GreyPair smooth(const GreyPair& pair, double variance_px2) override {
+    smooth_image(smoothing_kernel(std::abs(variance_px2)), variance_px2 > 0 ? maps_.grey() : view(right_),
+                 view(target_), stream());
+    return pair;
   }
 
   GreyPair undo_misalignment(const GreyPair& pair, const Misalignment& misalignment) override {

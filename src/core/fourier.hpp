@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace roadstereo {
+
+/// Discrete Fourier transform of squares of `side`×`side` complex values.
+class FourierSquare {
+ public:
+  static constexpr int side = 64;
+
+  FourierSquare();
+
+  float* real_row(int v) { return real_.data() + v * side; }
+  float* imaginary_row(int v) { return imaginary_.data() + v * side; }
+  float real(int u, int v) const { return real_[static_cast<std::size_t>(v * side + u)]; }
+  float imaginary(int u, int v) const { return imaginary_[static_cast<std::size_t>(v * side + u)]; }
+
+  /// Transforms the square, in place: frequency (k, l) is at column k and row l, or at side − k and side − l where it
+  /// is negative.
+  void transform();
+
+ private:
+  /// Every column at once (Cooley–Tukey, radix 2): consecutive columns are consecutive in memory.
+  void transform_columns();
+  void transpose();
+
+  std::array<float, side / 2> cosines_, sines_;
+  std::array<float, side * side> real_, imaginary_;
+};
+
+}  // namespace roadstereo

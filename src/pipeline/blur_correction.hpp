@@ -1,0 +1,14 @@
+#pragma once
+
+#include "roadstereo/blur_difference.hpp"
+#include "roadstereo/pipeline.hpp"
+
+namespace roadstereo {
+
+/// Whether the blur of a pair is to be measured: with every road that is searched without tracking, and now and then.
+bool blur_is_due(const PipelineState& carried);
+
+/// Takes a measurement into the state, if it differs significantly from what the state has.
+void update_blur(const BlurDifference& measured, PipelineState& carried);
+
+}  // namespace roadstereo
