@@ -28,7 +28,6 @@ void FourierSquare::transform() {
   transform_columns();
   transpose();
   transform_columns();
-  transpose();
 }
 
 void FourierSquare::transform_columns() {

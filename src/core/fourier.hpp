@@ -14,11 +14,9 @@ class FourierSquare {
 
   float* real_row(int v) { return real_.data() + v * side; }
   float* imaginary_row(int v) { return imaginary_.data() + v * side; }
-  float real(int u, int v) const { return real_[static_cast<std::size_t>(v * side + u)]; }
-  float imaginary(int u, int v) const { return imaginary_[static_cast<std::size_t>(v * side + u)]; }
 
-  /// Transforms the square, in place: frequency (k, l) is at column k and row l, or at side − k and side − l where it
-  /// is negative.
+  /// Transforms the square, in place and transposed: row k has the frequency k along the rows, or k − side, and column
+  /// l the frequency l along the columns.
   void transform();
 
  private:

@@ -35,8 +35,10 @@ void smooth_pixels(const SmoothingKernel& kernel, int first, int last, At at, st
     for (int u = 0; u < count; ++u) sums[static_cast<std::size_t>(u)] = half + kernel.weights[0] * centre[u];
     for (int k = 1; k <= kernel.radius; ++k) {
       const std::int16_t *const before = at(-k) + first, *const after = at(k) + first;
+      const std::int16_t weight = kernel.weights[k];
       for (int u = 0; u < count; ++u) {
-        sums[static_cast<std::size_t>(u)] += kernel.weights[k] * (before[u] + after[u]);
+        const auto both = static_cast<std::int16_t>(before[u] + after[u]);  // products of 16 bits are vectors of SSE2
+        sums[static_cast<std::size_t>(u)] += weight * both;
       }
     }
     for (int u = 0; u < count; ++u) {
@@ -64,12 +66,12 @@ SmoothingKernel smoothing_kernel(double variance_px2) {
   int rest = 1 << SmoothingKernel::fraction_bits;
   for (int k = SmoothingKernel::max_radius; k > 0; --k) {
     const double share = discrete_gaussian(k, variance_px2);
-    const int weight = static_cast<int>(std::lround(std::ldexp(share, SmoothingKernel::fraction_bits)));
+    const auto weight = static_cast<std::int16_t>(std::lround(std::ldexp(share, SmoothingKernel::fraction_bits)));
     if (weight > 0 && kernel.radius == 0) kernel.radius = k;
     kernel.weights[k] = weight;
     rest -= 2 * weight;
   }
-  kernel.weights[0] = rest;
+  kernel.weights[0] = static_cast<std::int16_t>(rest);
   return kernel;
 }
 

@@ -8,12 +8,13 @@
 namespace roadstereo {
 
 /// Weights of the discrete Gaussian, whose variance is exact however small it is (Lindeberg, "Scale-space for discrete
-/// signals", 1990), in fractions of 2^15, so that a host and a device have the same bits.
+/// signals", 1990), in fractions of 2^14, so that a host and a device have the same bits.
 struct SmoothingKernel {
-  static constexpr int max_radius = 20, fraction_bits = 15;
+  static constexpr int max_radius = 20, fraction_bits = 14;
 
   int radius = 0;
-  int weights[max_radius + 1] = {1 << fraction_bits};  ///< of the pixel, and of those so far on either side of it
+  std::int16_t weights[max_radius + 1] = {
+      1 << fraction_bits};  ///< of the pixel, and of those so far on either side of it
 };
 
 /// `variance_px2`: 0 … 16 pixels².

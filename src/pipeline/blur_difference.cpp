@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "core/fourier.hpp"
 #include "core/parallel.hpp"
@@ -37,17 +38,18 @@ struct PairSpectrum {
   }
 };
 
-/// Frequencies of the bins of a transformed window, and how many bins have each.
+/// Frequencies of the bins of a transformed window, and how many bins have each. The other half of the window has the
+/// same powers.
 struct Radii {
+  static constexpr int first_row = 1, end_row = side / 2;
   std::array<int, side * side> of_bin{};
   std::array<int, frequencies> bins{};
 
   Radii() {
-    for (int v = 0; v < side; ++v) {
-      for (int u = 0; u < side; ++u) {
-        const int k = std::min(u, side - u), l = std::min(v, side - v);
-        const int radius = static_cast<int>(std::lround(std::hypot(k, l)));
-        of_bin[static_cast<std::size_t>(v * side + u)] = radius;
+    for (int k = first_row; k < end_row; ++k) {
+      for (int l = 0; l < side; ++l) {
+        const int radius = static_cast<int>(std::lround(std::hypot(k, std::min(l, side - l))));
+        of_bin[static_cast<std::size_t>(k * side + l)] = std::min(radius, frequencies);
         if (radius < frequencies) ++bins[static_cast<std::size_t>(radius)];
       }
     }
@@ -98,48 +100,41 @@ class WindowSpectra {
     load(left, [this](int v) { return square_.real_row(v); });
     load(right, [this](int v) { return square_.imaginary_row(v); });
     square_.transform();
-    PairSpectrum of_window;
-    double left_power = 0, right_power = 0;
-    for (int v = 0; v < side; ++v) {
-      for (int u = 0; u < side; ++u) {
-        const int opposite_u = (side - u) % side, opposite_v = (side - v) % side;
-        const float a = square_.real(u, v), b = square_.imaginary(u, v);
-        const float c = square_.real(opposite_u, opposite_v), d = square_.imaginary(opposite_u, opposite_v);
-        const float of_left = (a + c) * (a + c) + (b - d) * (b - d), of_right = (a - c) * (a - c) + (b + d) * (b + d);
-        left_power += of_left;
-        right_power += of_right;
-        const int radius = radii_.of_bin[static_cast<std::size_t>(v * side + u)];
-        if (radius >= frequencies) continue;
-        of_window.left[static_cast<std::size_t>(radius)] += of_left;
-        of_window.right[static_cast<std::size_t>(radius)] += of_right;
+    std::array<float, frequencies + 1> left_power{}, right_power{};  // the last one of what is beyond
+    for (int k = Radii::first_row; k < Radii::end_row; ++k) {
+      const float *const a = square_.real_row(k), *const b = square_.imaginary_row(k);
+      const float *const c = square_.real_row(side - k), *const d = square_.imaginary_row(side - k);
+      const int* const radius = radii_.of_bin.data() + k * side;
+      for (int l = 0; l < side; ++l) {
+        const int opposite = (side - l) % side;
+        const float even = a[l] + c[opposite], odd = b[l] - d[opposite];
+        const float other_even = a[l] - c[opposite], other_odd = b[l] + d[opposite];
+        left_power[static_cast<std::size_t>(radius[l])] += even * even + odd * odd;
+        right_power[static_cast<std::size_t>(radius[l])] += other_even * other_even + other_odd * other_odd;
       }
     }
+    PairSpectrum of_window;
+    std::copy_n(left_power.begin(), frequencies, of_window.left.begin());
+    std::copy_n(right_power.begin(), frequencies, of_window.right.begin());
+    const double left_sum = std::accumulate(left_power.begin(), left_power.end(), 0.0);
+    const double right_sum = std::accumulate(right_power.begin(), right_power.end(), 0.0);
     constexpr double contrast = min_contrast_grey * grey_scale * side * side;
     of_window.windows = 1;
-    sum.add(of_window, 1 / (std::sqrt(left_power * right_power) + contrast * contrast));
+    sum.add(of_window, 1 / (std::sqrt(left_sum * right_sum) + contrast * contrast));
   }
 
  private:
   /// Tapered differences from the mean.
   template <class RowOf>
   void load(const Window& window, RowOf row_of) {
-    double sum = 0, weights = 0;
-    for (int v = 0; v < side; ++v) {
-      for (int u = 0; u < side; ++u) {
-        const double weight = weight_of(u, v);
-        sum += weight * window(u, v);
-        weights += weight;
-      }
-    }
-    const float mean = static_cast<float>(sum / weights);
+    double sum = 0;
+    for (int v = 0; v < side; ++v) sum += std::accumulate(window.row(v), window.row(v) + side, 0);
+    const auto mean = static_cast<float>(sum / (side * side));
     for (int v = 0; v < side; ++v) {
       float* const row = row_of(v);
-      for (int u = 0; u < side; ++u) row[u] = weight_of(u, v) * (window(u, v) - mean);
+      const float weight = taper_[static_cast<std::size_t>(v)];
+      for (int u = 0; u < side; ++u) row[u] = weight * taper_[static_cast<std::size_t>(u)] * (window(u, v) - mean);
     }
-  }
-
-  float weight_of(int u, int v) const {
-    return taper_[static_cast<std::size_t>(u)] * taper_[static_cast<std::size_t>(v)];
   }
 
   const Radii& radii_;

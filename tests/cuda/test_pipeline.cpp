@@ -109,6 +109,39 @@ TEST_F(CudaPipeline, FindsRoadBetweenMisalignedRowsThatHostFinds) {
   EXPECT_EQ(found.road.correlation, expected.road.correlation);
 }
 
+/// Thrice the mean of three by three pixels: a blur of 2 pixels².
+void defocus(Frame& frame) {
+  for (int pass = 0; pass < 3; ++pass) {
+    const std::vector<std::uint8_t> before = frame.bytes;
+    for (int v = 1; v + 1 < frame.height; ++v) {
+      for (int u = 1; u + 1 < frame.width; ++u) {
+        int sum = 4;
+        for (int dv = -1; dv <= 1; ++dv) {
+          for (int du = -1; du <= 1; ++du) sum += before[static_cast<std::size_t>((v + dv) * frame.width + u + du)];
+        }
+        frame.bytes[static_cast<std::size_t>(v * frame.width + u)] = static_cast<std::uint8_t>(sum / 9);
+      }
+    }
+  }
+}
+
+TEST_F(CudaPipeline, EqualisesBlurAsHostDoes) {
+  const StereoCalibration calibration = frame_of("uav").calibration;
+  Pipeline host(options_of("default", "cpu"), calibration), device(options_of("default", "cuda"), calibration);
+  for (int frame = 0; frame < 2; ++frame) {
+    synth::SyntheticPair pair = frame_of("uav", frame);
+    defocus(pair.right);
+    const FrameResult& expected = host.process(pair.left.view(), pair.right.view());
+    const FrameResult& found = device.process(pair.left.view(), pair.right.view());
+    EXPECT_NEAR(expected.smoothed_px2, 2, 0.5);
+    EXPECT_EQ(found.smoothed_px2, expected.smoothed_px2);
+    EXPECT_EQ(found.blur.known(), frame == 0);
+    EXPECT_EQ(found.grey, expected.grey);
+    EXPECT_EQ(found.right, expected.right);
+    EXPECT_GE(Difference(expected.disparity, found.disparity).same_share, 0.99);
+  }
+}
+
 TEST_P(CudaPreset, MatchesHostFrameByFrame) {
   const StereoCalibration calibration = frame_of("uav").calibration;
   Pipeline host(options_of(GetParam(), "cpu"), calibration), device(options_of(GetParam(), "cuda"), calibration);
