@@ -73,6 +73,12 @@ def blurred(image):
     return np.asarray(Image.fromarray(image).filter(ImageFilter.GaussianBlur(1.6)))
 
 
+def defocused(generator, radius):
+    """By the lens; the noise of the sensor is as sharp as before."""
+    noisy = noise(generator, 1)
+    return lambda image: noisy(np.asarray(Image.fromarray(image).filter(ImageFilter.GaussianBlur(radius)), float))
+
+
 def compressed(image):
     memory = io.BytesIO()
     Image.fromarray(image).save(memory, "JPEG", quality=30)
@@ -101,6 +107,8 @@ def variants(generator):
         "a third of the contrast": seen(noise(generator, 1.5, 0.3, 40), noise(generator, 1.5, 0.3, 48)),
         "blurred": seen(blurred),
         "blurred on one side": seen(blurred, lambda image: image),
+        "right lens defocused by 1 px": seen(lambda image: image, defocused(generator, 1)),
+        "right lens defocused by 2 px": seen(lambda image: image, defocused(generator, 2)),
         "JPEG 30": seen(compressed),
         "rows 0.7 px off": seen(lambda image: image, rows_off),
     }
