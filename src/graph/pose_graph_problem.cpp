@@ -104,6 +104,7 @@ void PoseGraphProblem::solve() {
   options.num_threads = 1;
   options.max_num_iterations = 100;
   options.function_tolerance = 1e-9;
+  options.parameter_tolerance = 0;  // relative to the positions: far from the origin it would end the solution early
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem_, &summary);

@@ -166,9 +166,13 @@ void FlightTrajectory::optimise(const TrackSettings& track) {
   }
   std::optional<io::LocalAxes> axes;
   if (!track.file.empty()) {
-    axes.emplace(io::read_track(track.file));
+    double from_s = INFINITY, to_s = -INFINITY;
+    for (double& time_s : input.times_s) {
+      time_s += track.offset_s;
+      if (std::isfinite(time_s)) from_s = std::min(from_s, time_s), to_s = std::max(to_s, time_s);
+    }
+    axes.emplace(io::read_track(track.file), from_s, to_s);
     input.fixes = axes->fixes();
-    for (double& time_s : input.times_s) time_s += track.offset_s;
   }
   PoseGraphOptions options;
   options.time_offset_sd_s = track.offset_sd_s;

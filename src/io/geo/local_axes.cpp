@@ -2,6 +2,7 @@
 
 #include <GeographicLib/LocalCartesian.hpp>
 #include <GeographicLib/UTMUPS.hpp>
+#include <algorithm>
 #include <cmath>
 
 #include "core/degrees.hpp"
@@ -30,10 +31,20 @@ EarthPose on_earth(const GeographicLib::LocalCartesian& local, const std::array<
   return result;
 }
 
+/// The middle one of the fixes within a time, of all if none is.
+const TrackPoint& middle_fix(const std::vector<TrackPoint>& points, double from_s, double to_s) {
+  auto first = std::lower_bound(points.begin(), points.end(), from_s,
+                                [](const TrackPoint& point, double time_s) { return point.time_s < time_s; });
+  auto end = std::upper_bound(points.begin(), points.end(), to_s,
+                              [](double time_s, const TrackPoint& point) { return time_s < point.time_s; });
+  if (first >= end) first = points.begin(), end = points.end();
+  return *(first + (end - first - 1) / 2);
+}
+
 }  // namespace
 
-LocalAxes::LocalAxes(const Track& track) {
-  const TrackPoint& origin = track.points().front();
+LocalAxes::LocalAxes(const Track& track, double from_s, double to_s) {
+  const TrackPoint& origin = middle_fix(track.points(), from_s, to_s);
   lat_deg_ = origin.lat_deg;
   lon_deg_ = origin.lon_deg;
   alt_m_ = std::isnan(origin.alt_m) ? 0 : origin.alt_m;

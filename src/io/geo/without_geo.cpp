@@ -38,7 +38,7 @@ double distance_m(const GeoPosition& /*from*/, const GeoPosition& /*to*/) {
   fail_without_geo();
 }
 
-LocalAxes::LocalAxes(const Track& /*track*/) {
+LocalAxes::LocalAxes(const Track& /*track*/, double /*from_s*/, double /*to_s*/) {
   fail_without_geo();
 }
 

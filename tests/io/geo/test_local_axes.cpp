@@ -74,6 +74,23 @@ TEST(LocalAxes, HeadingIsFromTrueNorthOfItsPlace) {
   EXPECT_NEAR(std::remainder(position.heading_deg, 360.0), to_degrees(1e4 * std::tan(to_radians(48)) / normal_m), 1e-4);
 }
 
+// A receiver that ran all the way from Hamburg: the recording is in Bavaria, in the next zone. What is odd comes before
+// the recording and after it.
+TEST(LocalAxes, AreThoseOfTheRecording) {
+  std::vector<TrackPoint> points{{0, 53.5, 9.9, 20}};
+  for (int i = 0; i < 5; ++i) points.push_back({1e5 + i, 48 + 1e-5 * i, 12.5, 400.0 + i});
+  for (int i = 0; i < 9; ++i) points.push_back({2e5 + i, 47, 15, 900});
+  const LocalAxes axes(Track(points), 1e5, 1e5 + 4);
+  EXPECT_EQ(axes.crs(), "EPSG:32633");
+  const std::array<double, 3> middle_m = axes.fixes()[3].position_m;
+  for (const double value_m : middle_m) EXPECT_NEAR(value_m, 0, 1e-8);
+  EXPECT_NEAR(axes.fixes()[5].position_m[2], 2, 1e-6);
+  EXPECT_EQ(LocalAxes(Track(points), 0, 0).crs(), "EPSG:32632");
+  // Without a fix within the time: the middle one of all 15, index 7, is the second of the last stretch.
+  EXPECT_EQ(LocalAxes(Track(points), 5e4, 6e4).crs(), LocalAxes(Track(points)).crs());
+  for (const double value_m : LocalAxes(Track(points), 5e4, 6e4).fixes()[7].position_m) EXPECT_NEAR(value_m, 0, 1e-8);
+}
+
 TEST(LocalAxes, PolesHaveNoUtm) {
   EXPECT_THROW(LocalAxes(track_at(87, 9)), Error);
 }
