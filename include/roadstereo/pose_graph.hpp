@@ -31,8 +31,8 @@ struct LoopLink {
 };
 
 /// Position of a GNSS antenna in axes of the Earth: x east, y north, z up. All fixes have one unknown error in common,
-/// with these standard errors. In addition each has its own noise, whose size is estimated from the fit to the
-/// trajectory.
+/// each in proportion to these standard errors. In addition each has its own noise, in proportion to them as well,
+/// whose size is estimated from the fit to the trajectory.
 struct PositionFix {
   double time_s = 0;
   std::array<double, 3> position_m{};  ///< z NaN: unknown

@@ -10,6 +10,11 @@
 #include "roadstereo/error.hpp"
 
 namespace roadstereo {
+namespace {
+
+constexpr double best_noise_m = 0.01;  // of the best receivers
+
+}  // namespace
 
 /// Puts the pieces where the fixes have them.
 void GraphTrack::align(PoseGraphResult& result) {
@@ -37,7 +42,6 @@ void GraphTrack::align(PoseGraphResult& result) {
   result.track_contradicts = alignment.contradicts;
   if (!alignment.unused.empty()) return curve_.reset();
   unknowns_.time_offset_s = aligned_offset_s_ = alignment.time_offset_s;
-  noise_m_ = input_.fixes.front().horizontal_sd_m;
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     const auto& to_earth = alignment.pieces[static_cast<std::size_t>(frames[i].piece)];
     if (!to_earth) continue;
@@ -75,10 +79,33 @@ void GraphTrack::add_levels(PoseGraphProblem& problem) const {
   }
 }
 
+/// Of the fixes along the way, or of all if there are none.
+void GraphTrack::take_usual_sd() {
+  std::vector<double> horizontal, vertical;
+  for (const TrackObservation& one : observations_) {
+    horizontal.push_back(one.horizontal_sd_m);
+    vertical.push_back(one.vertical_sd_m);
+  }
+  for (std::size_t i = 0; observations_.empty() && i < curve_->fixes().size(); ++i) {
+    horizontal.push_back(curve_->fixes()[i].horizontal_sd_m);
+    vertical.push_back(curve_->fixes()[i].vertical_sd_m);
+  }
+  usual_horizontal_m_ = upper_median(horizontal);
+  usual_vertical_m_ = upper_median(vertical);
+  if (noise_m_ == 0) noise_m_ = usual_horizontal_m_;
+}
+
+/// How many times the common error of the fixes one of them has: receivers know when they are worse than usual.
+Eigen::Vector3d GraphTrack::shares_of_error(const TrackObservation& one) const {
+  const double horizontal = one.horizontal_sd_m / usual_horizontal_m_;
+  return {horizontal, horizontal, one.vertical_sd_m / usual_vertical_m_};
+}
+
 void GraphTrack::add_to(PoseGraphProblem& problem) {
   constexpr double unknown_altitude_m = 100;  // 0, then: as good as any, so that the height is determined
   pieces_ = anchored_pieces();
   observations_ = observe_track(pieces_, *curve_, unknowns_.time_offset_s, options_.max_fix_gap_s);
+  take_usual_sd();
   std::vector<double> fix_times_s;
   for (const PositionFix& fix : curve_->fixes()) fix_times_s.push_back(fix.time_s);
   const double longest_s = std::max(options_.max_fix_gap_s, options_.fix_correlation_s);
@@ -86,13 +113,15 @@ void GraphTrack::add_to(PoseGraphProblem& problem) {
   const double of_frames =
       shared_by(static_cast<double>(poses_.size()), recorded_s(input_.times_s, options_.max_fix_gap_s));
   add_levels(problem);
-  Eigen::Vector3d error_sd(INFINITY, INFINITY, INFINITY);
+  const double least_m = std::min(noise_m_, best_noise_m);
   for (const TrackObservation& one : observations_) {
-    const double vertical = one.has_z ? one.vertical_sd_m / one.horizontal_sd_m * noise_m_ : unknown_altitude_m;
-    problem.add_fix(one.frame(), {one, {1 / noise_m_, 1 / noise_m_, 1 / vertical}},
+    const Eigen::Vector3d shares = shares_of_error(one);
+    const double horizontal = std::max(noise_m_ * shares.x(), least_m);
+    const double vertical = one.has_z ? one.vertical_sd_m / one.horizontal_sd_m * horizontal : unknown_altitude_m;
+    problem.add_fix(one.frame(), {one, {1 / horizontal, 1 / horizontal, 1 / vertical}, shares},
                     one.interpolated ? of_frames : of_fixes);
-    error_sd = error_sd.cwiseMin(Eigen::Vector3d(one.horizontal_sd_m, one.horizontal_sd_m, one.vertical_sd_m));
   }
+  const Eigen::Vector3d error_sd(usual_horizontal_m_, usual_horizontal_m_, usual_vertical_m_);
   problem.add_track_prior(error_sd, options_.lever_arm_sd_m, options_.time_offset_sd_s, options_.max_time_offset_s);
   if (!time_offset_found_) problem.hold_time_offset();
   problem.hold_lever_arm(unknown_lever_axes_);
@@ -125,16 +154,13 @@ bool GraphTrack::finds_time_offset(PoseGraphProblem& solution) const {
   return deviance(apart_sd_s) < deviance(together_sd_s);
 }
 
-/// Horizontal distances of the antenna from the positions of the track.
-std::vector<double> GraphTrack::distances() const {
-  std::vector<double> result;
-  for (const TrackObservation& one : observations_) {
-    const GraphPose& pose = poses_[one.frame()];
-    const Eigen::Vector3d antenna =
-        one.antenna(pose.position, pose.rotation, unknowns_.lever_arm, unknowns_.time_offset_s);
-    result.push_back((antenna - one.position_m + unknowns_.fix_error).head<2>().norm());
-  }
-  return result;
+/// Horizontal distance of the antenna from a position of the track.
+double GraphTrack::distance(const TrackObservation& one) const {
+  const GraphPose& pose = poses_[one.frame()];
+  const Eigen::Vector3d antenna =
+      one.antenna(pose.position, pose.rotation, unknowns_.lever_arm, unknowns_.time_offset_s);
+  const Eigen::Vector3d error = shares_of_error(one).cwiseProduct(unknowns_.fix_error);
+  return (antenna - one.position_m + error).head<2>().norm();
 }
 
 std::size_t GraphTrack::frames_with_position() const {
@@ -145,13 +171,14 @@ std::size_t GraphTrack::frames_with_position() const {
   return count;
 }
 
-/// Standard deviation per axis. Of a distance in two dimensions the median is 1.18 of them. As before if no frame has a
-/// position.
+/// Standard deviation per axis of a fix with the usual standard error. Of a distance in two dimensions the median
+/// is 1.18 of them. As before if no frame has a position.
 bool GraphTrack::take_noise(bool always) {
-  constexpr double rayleigh_median = 1.1774, least_m = 0.01;  // of the best receivers
-  constexpr double settled = 0.8;                             // of the noise before
-  const double after_m =
-      observations_.empty() ? noise_m_ : std::max(upper_median(distances()) / rayleigh_median, least_m);
+  constexpr double rayleigh_median = 1.1774;
+  constexpr double settled = 0.8;  // of the noise before
+  std::vector<double> usual_m;
+  for (const TrackObservation& one : observations_) usual_m.push_back(distance(one) / shares_of_error(one).x());
+  const double after_m = usual_m.empty() ? noise_m_ : std::max(upper_median(usual_m) / rayleigh_median, best_noise_m);
   if (!always && after_m > settled * noise_m_) return false;
   noise_m_ = after_m;
   return true;
@@ -175,11 +202,10 @@ std::optional<TrackFit> GraphTrack::fit(PoseGraphProblem& solution) const {
   }
   fit.time_offset_s = {unknowns_.time_offset_s, deviations[3]};
   fit.time_offset_found = time_offset_found_;
-  const std::vector<double> distances_m = distances();
   double squares = 0;
-  for (const double distance_m : distances_m) squares += distance_m * distance_m;
+  for (const TrackObservation& one : observations_) squares += std::pow(distance(one), 2);
   fit.frames = frames_with_position();
-  fit.rms_m = std::sqrt(squares / static_cast<double>(distances_m.size()));
+  fit.rms_m = std::sqrt(squares / static_cast<double>(observations_.size()));
   return fit;
 }
 

@@ -47,7 +47,9 @@ class GraphTrack {
   void add_levels(PoseGraphProblem& problem) const;
   std::vector<int> unknown_lever_axes(PoseGraphProblem& solution) const;
   bool finds_time_offset(PoseGraphProblem& solution) const;
-  std::vector<double> distances() const;
+  void take_usual_sd();
+  Eigen::Vector3d shares_of_error(const TrackObservation& one) const;
+  double distance(const TrackObservation& one) const;
   std::size_t frames_with_position() const;
 
   const PoseGraphInput& input_;
@@ -58,10 +60,11 @@ class GraphTrack {
   std::vector<PoseCurve> pieces_;    ///< anchored ones, before the last solution
   std::vector<TrackObservation> observations_;
   TrackUnknowns unknowns_;
-  double aligned_offset_s_ = 0;          ///< 0 unless the alignment needs another one
-  bool time_offset_found_ = true;        ///< false: held
-  std::vector<int> unknown_lever_axes_;  ///< held at 0
-  double noise_m_ = 0;                   ///< of the fixes, per axis
+  double aligned_offset_s_ = 0;                           ///< 0 unless the alignment needs another one
+  bool time_offset_found_ = true;                         ///< false: held
+  std::vector<int> unknown_lever_axes_;                   ///< held at 0
+  double usual_horizontal_m_ = 0, usual_vertical_m_ = 0;  ///< medians of the standard errors of the fixes
+  double noise_m_ = 0;                                    ///< of a fix with these, per axis; 0: not known yet
 };
 
 }  // namespace roadstereo

@@ -48,8 +48,9 @@ class LinkResidual {
 /// evidence of their time.
 class FixResidual {
  public:
-  FixResidual(const TrackObservation& observation, const Eigen::Vector3d& weights)
-      : observation_(observation), weights_(weights) {}
+  /// `shares` is how many times the common error of the fixes this one has.
+  FixResidual(const TrackObservation& observation, const Eigen::Vector3d& weights, const Eigen::Vector3d& shares)
+      : observation_(observation), weights_(weights), shares_(shares) {}
 
   template <class T>
   bool operator()(const T* position, const T* rotation, const T* lever_arm, const T* fix_error, const T* time_offset,
@@ -60,14 +61,14 @@ class FixResidual {
     const Eigen::Quaternion<T> q(Eigen::Map<const Eigen::Quaternion<T>>{rotation});
     const Vector antenna = observation_.antenna(p, q, lever, *time_offset);
     for (Eigen::Index i = 0; i < 3; ++i) {
-      residual[i] = weights_[i] * (antenna[i] - observation_.position_m[i] + error[i]);
+      residual[i] = weights_[i] * (antenna[i] - observation_.position_m[i] + shares_[i] * error[i]);
     }
     return true;
   }
 
  private:
   TrackObservation observation_;
-  Eigen::Vector3d weights_;
+  Eigen::Vector3d weights_, shares_;
 };
 
 /// The road's normal against the vertical.

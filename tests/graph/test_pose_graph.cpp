@@ -278,12 +278,53 @@ TEST(PoseGraphTrack, ClockStaysWithinItsLimit) {
   }
 }
 
+// A receiver that loses its corrections: 4 m off for half of the time, and it knows that they are missing.
+TEST(PoseGraphTrack, FixesCountAsWellAsTheyAreKnown) {
+  for (const bool good_first : {true, false}) {
+    PoseGraphInput input = Survey{}.input();
+    for (std::size_t i = 0; i < input.fixes.size(); ++i) {
+      PositionFix& fix = input.fixes[i];
+      if ((i % 100 < 50) == good_first) continue;
+      fix.position_m[0] += 4;
+      fix.horizontal_sd_m = 5;
+      fix.vertical_sd_m = 10;
+    }
+    const PoseGraphResult result = optimise_poses(input);
+    ASSERT_TRUE(result.track) << result.track_unused;
+    for (int i = 0; i < Survey::frames; i += 50) {
+      const FramePose& pose = result.trajectory.frames[static_cast<std::size_t>(i)];
+      EXPECT_NEAR(pose.camera_to_world[3], Survey::at(0.1 * i).translation[0], 0.1) << good_first << i;
+      EXPECT_NEAR(pose.camera_to_world[7], Survey::at(0.1 * i).translation[1], 0.1) << good_first << i;
+      EXPECT_GT(pose.covariance[0], 1e-5) << good_first << i;  // the corrections are known to 0.02 m
+    }
+  }
+}
+
+// One of the fixes says that it is good, and is: the others, which are 4 m off, outvote it no longer.
+TEST(PoseGraphTrack, OneGoodFixIsBelieved) {
+  PoseGraphInput input = Survey{}.input();
+  constexpr std::size_t good = 200;  // at 28 s
+  for (std::size_t i = 0; i < input.fixes.size(); ++i) {
+    if (i == good) continue;
+    input.fixes[i].position_m[0] += 4;
+    input.fixes[i].horizontal_sd_m = 5;
+    input.fixes[i].vertical_sd_m = 10;
+  }
+  const PoseGraphResult result = optimise_poses(input);
+  ASSERT_TRUE(result.track) << result.track_unused;
+  const FramePose& pose = result.trajectory.frames[280];
+  // The antenna is 0.5 m from the camera.
+  EXPECT_NEAR(pose.camera_to_world[3], Survey::at(28).translation[0], 0.6);
+  EXPECT_NEAR(pose.camera_to_world[7], Survey::at(28).translation[1], 0.6);
+}
+
 // Where the origin is does not matter to how the poses fit: a way that climbs 5 % towards a place 75 km away.
 TEST(PoseGraphTrack, PlaceFarFromOriginIsSolvedAsWell) {
   constexpr int frames = 400;
   const double grade_rad = std::atan(0.05);
   RigidMotion tilt;
-  tilt.rotation = {{{std::cos(grade_rad), 0, -std::sin(grade_rad)}, {0, 1, 0}, {std::sin(grade_rad), 0, std::cos(grade_rad)}}};
+  tilt.rotation = {
+      {{std::cos(grade_rad), 0, -std::sin(grade_rad)}, {0, 1, 0}, {std::sin(grade_rad), 0, std::cos(grade_rad)}}};
   std::vector<RigidMotion> truth;
   double x = 0, y = 0;
   for (int i = 0; i < frames; ++i) {

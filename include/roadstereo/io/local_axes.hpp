@@ -12,9 +12,9 @@
 namespace roadstereo::io {
 
 /// Axes at a fix of a track, x east, y north, z up, metres, and the UTM zone around it (WGS84): the middle one of those
-/// within a time, or of all if none is. Lengths in UTM differ from those on the ground by −0.04 to +0.1 %; in these axes
-/// they do not. The constructor throws Error at a latitude without UTM (near the poles), and in a build without GDAL and
-/// GeographicLib.
+/// within a time, or of all if none is. Lengths in UTM differ from those on the ground by −0.04 to +0.1 %; in these
+/// axes they do not. The constructor throws Error at a latitude without UTM (near the poles), and in a build without
+/// GDAL and GeographicLib.
 class LocalAxes {
  public:
   explicit LocalAxes(const Track& track, double from_s = -std::numeric_limits<double>::infinity(),
