@@ -154,7 +154,10 @@ class Aligner {
  private:
   /// A piece has a direction if it is longer than its positions are uncertain.
   static bool anchors(const std::vector<TrackMatch>& matches) {
-    return matches.size() >= 2 && extent(matches) > matches.front().sd_m;
+    if (matches.size() < 2) return false;
+    std::vector<double> sd_m;
+    for (const TrackMatch& match : matches) sd_m.push_back(match.sd_m);
+    return extent(matches) > upper_median(sd_m);
   }
 
   std::vector<TrackMatch> matches_of(std::size_t piece, double offset_s, bool mirrored,

@@ -318,6 +318,28 @@ TEST(PoseGraphTrack, OneGoodFixIsBelieved) {
   EXPECT_NEAR(pose.camera_to_world[7], Survey::at(28).translation[1], 0.6);
 }
 
+// The first fix of a receiver that has just been switched on: it knows that it may be far off.
+TEST(PoseGraphTrack, FirstFixIsOneOfMany) {
+  Survey survey;
+  for (const bool mirrored : {false, true}) {
+    PoseGraphInput input = survey.input();
+    std::vector<PositionFix> fixes;  // from the first frame on, one every 4 s
+    for (std::size_t i = 60; i < input.fixes.size(); i += 20) fixes.push_back(input.fixes[i]);
+    input.fixes = fixes;
+    input.fixes.front().horizontal_sd_m = 120;
+    input.fixes.front().vertical_sd_m = 240;
+    if (mirrored) {
+      for (PositionFix& fix : input.fixes) fix.position_m[0] = -fix.position_m[0];
+    }
+    const PoseGraphResult result = optimise_poses(input);
+    EXPECT_EQ(result.track_contradicts, mirrored) << result.track_unused;
+    if (mirrored) continue;
+    ASSERT_TRUE(result.track) << result.track_unused;
+    EXPECT_NEAR(result.track->time_offset_s.value, 0, 0.05);
+    EXPECT_NEAR(result.trajectory.frames[300].camera_to_world[3], Survey::at(30).translation[0], 0.1);
+  }
+}
+
 // Where the origin is does not matter to how the poses fit: a way that climbs 5 % towards a place 75 km away.
 TEST(PoseGraphTrack, PlaceFarFromOriginIsSolvedAsWell) {
   constexpr int frames = 400;
