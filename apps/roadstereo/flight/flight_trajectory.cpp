@@ -176,16 +176,18 @@ void FlightTrajectory::optimise(const TrackSettings& track) {
   }
   PoseGraphOptions options;
   options.time_offset_sd_s = track.offset_sd_s;
-  graph_ = close_loops(std::move(input), *loops_, options);
+  PoseGraphResult graph = close_loops(std::move(input), *loops_, options);
   loops_.reset();
-  if (!graph_.track) return;
-  crs_ = axes->crs();
-  for (std::size_t i = 0; i < graph_.trajectory.frames.size(); ++i) {
-    FramePose& pose = graph_.trajectory.frames[i];
+  std::vector<CameraPlace> places;
+  for (std::size_t i = 0; graph.track && i < graph.trajectory.frames.size(); ++i) {
+    FramePose& pose = graph.trajectory.frames[i];
     if (pose.piece != 0) continue;
-    places_.push_back(place_of(pose, road_axes_[i], *axes));
-    pose.camera_to_world = axes->to_utm(pose.camera_to_world);
+    places.push_back(place_of(pose, road_axes_[i], *axes));
+    pose.camera_to_world = axes->to_utm(pose.camera_to_world);  // may throw
   }
+  graph_ = std::move(graph);
+  places_ = std::move(places);
+  if (graph_.track) crs_ = axes->crs();
 }
 
 const Trajectory& FlightTrajectory::trajectory() const {
