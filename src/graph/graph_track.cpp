@@ -41,7 +41,7 @@ void GraphTrack::align(PoseGraphResult& result) {
   result.track_unused = alignment.unused;
   result.track_contradicts = alignment.contradicts;
   if (!alignment.unused.empty()) return curve_.reset();
-  unknowns_.time_offset_s = aligned_offset_s_ = alignment.time_offset_s;
+  unknowns_.time_offset_s = aligned_offset_s_ = covered_offset_s_ = alignment.time_offset_s;
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     const auto& to_earth = alignment.pieces[static_cast<std::size_t>(frames[i].piece)];
     if (!to_earth) continue;
@@ -104,7 +104,7 @@ Eigen::Vector3d GraphTrack::shares_of_error(const TrackObservation& one) const {
 void GraphTrack::add_to(PoseGraphProblem& problem) {
   constexpr double unknown_altitude_m = 100;  // 0, then: as good as any, so that the height is determined
   pieces_ = anchored_pieces();
-  observations_ = observe_track(pieces_, *curve_, unknowns_.time_offset_s, options_.max_fix_gap_s);
+  observations_ = observe_track(pieces_, *curve_, unknowns_.time_offset_s, covered_offset_s_, options_.max_fix_gap_s);
   take_usual_sd();
   std::vector<double> fix_times_s;
   for (const PositionFix& fix : curve_->fixes()) fix_times_s.push_back(fix.time_s);
@@ -117,7 +117,8 @@ void GraphTrack::add_to(PoseGraphProblem& problem) {
   for (const TrackObservation& one : observations_) {
     const Eigen::Vector3d shares = shares_of_error(one);
     const double horizontal = std::max(noise_m_ * shares.x(), least_m);
-    const double vertical = one.has_z ? one.vertical_sd_m / one.horizontal_sd_m * horizontal : unknown_altitude_m;
+    const double vertical =
+        one.has_z ? vertical_excess_ * one.vertical_sd_m / one.horizontal_sd_m * horizontal : unknown_altitude_m;
     problem.add_fix(one.frame(), {one, {1 / horizontal, 1 / horizontal, 1 / vertical}, shares},
                     one.interpolated ? of_frames : of_fixes);
   }
@@ -154,13 +155,13 @@ bool GraphTrack::finds_time_offset(PoseGraphProblem& solution) const {
   return deviance(apart_sd_s) < deviance(together_sd_s);
 }
 
-/// Horizontal distance of the antenna from a position of the track.
-double GraphTrack::distance(const TrackObservation& one) const {
+/// The antenna from a position of the track.
+Eigen::Vector3d GraphTrack::away(const TrackObservation& one) const {
   const GraphPose& pose = poses_[one.frame()];
   const Eigen::Vector3d antenna =
       one.antenna(pose.position, pose.rotation, unknowns_.lever_arm, unknowns_.time_offset_s);
   const Eigen::Vector3d error = shares_of_error(one).cwiseProduct(unknowns_.fix_error);
-  return (antenna - one.position_m + error).head<2>().norm();
+  return antenna - one.position_m + error;
 }
 
 std::size_t GraphTrack::frames_with_position() const {
@@ -174,13 +175,20 @@ std::size_t GraphTrack::frames_with_position() const {
 /// Standard deviation per axis of a fix with the usual standard error. Of a distance in two dimensions the median
 /// is 1.18 of them. As before if no frame has a position.
 bool GraphTrack::take_noise(bool always) {
-  constexpr double rayleigh_median = 1.1774;
+  constexpr double rayleigh_median = 1.1774, normal_median = 0.6745;
   constexpr double settled = 0.8;  // of the noise before
-  std::vector<double> usual_m;
-  for (const TrackObservation& one : observations_) usual_m.push_back(distance(one) / shares_of_error(one).x());
-  const double after_m = usual_m.empty() ? noise_m_ : std::max(upper_median(usual_m) / rayleigh_median, best_noise_m);
+  std::vector<double> horizontal_m, vertical_m;
+  for (const TrackObservation& one : observations_) {
+    const Eigen::Vector3d usual_m = away(one).cwiseQuotient(shares_of_error(one));
+    horizontal_m.push_back(usual_m.head<2>().norm());
+    if (one.has_z) vertical_m.push_back(std::abs(usual_m.z()));
+  }
+  const double after_m =
+      horizontal_m.empty() ? noise_m_ : std::max(upper_median(horizontal_m) / rayleigh_median, best_noise_m);
   if (!always && after_m > settled * noise_m_) return false;
   noise_m_ = after_m;
+  const double expected_m = noise_m_ * usual_vertical_m_ / usual_horizontal_m_;
+  vertical_excess_ = vertical_m.empty() ? 1 : std::max(1.0, upper_median(vertical_m) / normal_median / expected_m);
   return true;
 }
 
@@ -189,7 +197,9 @@ bool GraphTrack::hold_unknown(PoseGraphProblem& solution) {
   if (!time_offset_found_) unknowns_.time_offset_s = aligned_offset_s_;
   unknown_lever_axes_ = unknown_lever_axes(solution);
   for (const int axis : unknown_lever_axes_) unknowns_.lever_arm[axis] = 0;
-  return !time_offset_found_ || !unknown_lever_axes_.empty();
+  const bool same_fixes = unknowns_.time_offset_s == covered_offset_s_;
+  covered_offset_s_ = unknowns_.time_offset_s;
+  return !time_offset_found_ || !unknown_lever_axes_.empty() || !same_fixes;
 }
 
 std::optional<TrackFit> GraphTrack::fit(PoseGraphProblem& solution) const {
@@ -203,7 +213,7 @@ std::optional<TrackFit> GraphTrack::fit(PoseGraphProblem& solution) const {
   fit.time_offset_s = {unknowns_.time_offset_s, deviations[3]};
   fit.time_offset_found = time_offset_found_;
   double squares = 0;
-  for (const TrackObservation& one : observations_) squares += std::pow(distance(one), 2);
+  for (const TrackObservation& one : observations_) squares += away(one).head<2>().squaredNorm();
   fit.frames = frames_with_position();
   fit.rms_m = std::sqrt(squares / static_cast<double>(observations_.size()));
   return fit;

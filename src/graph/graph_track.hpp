@@ -35,7 +35,8 @@ class GraphTrack {
   /// before and `always` is false: it falls while the time offset is being found. Returns whether it was taken.
   bool take_noise(bool always);
 
-  /// Holds what a solution does not tell from then on. Returns whether that is anything.
+  /// Holds what a solution does not tell from then on, and takes the fixes that there are at its time offset. Returns
+  /// whether that makes another solution.
   bool hold_unknown(PoseGraphProblem& solution);
 
   /// How the fixes fit a solution; nothing if there is none at the times of the frames.
@@ -49,7 +50,7 @@ class GraphTrack {
   bool finds_time_offset(PoseGraphProblem& solution) const;
   void take_usual_sd();
   Eigen::Vector3d shares_of_error(const TrackObservation& one) const;
-  double distance(const TrackObservation& one) const;
+  Eigen::Vector3d away(const TrackObservation& one) const;
   std::size_t frames_with_position() const;
 
   const PoseGraphInput& input_;
@@ -60,11 +61,13 @@ class GraphTrack {
   std::vector<PoseCurve> pieces_;    ///< anchored ones, before the last solution
   std::vector<TrackObservation> observations_;
   TrackUnknowns unknowns_;
-  double aligned_offset_s_ = 0;                           ///< 0 unless the alignment needs another one
-  bool time_offset_found_ = true;                         ///< false: held
-  std::vector<int> unknown_lever_axes_;                   ///< held at 0
+  double aligned_offset_s_ = 0;          ///< 0 unless the alignment needs another one
+  double covered_offset_s_ = 0;          ///< whose fixes are taken: all solutions have the same, until one is chosen
+  bool time_offset_found_ = true;        ///< false: held
+  std::vector<int> unknown_lever_axes_;  ///< held at 0
   double usual_horizontal_m_ = 0, usual_vertical_m_ = 0;  ///< medians of the standard errors of the fixes
   double noise_m_ = 0;                                    ///< of a fix with these, per axis; 0: not known yet
+  double vertical_excess_ = 1;  ///< how many times larger the noise of altitudes is than their standard errors say
 };
 
 }  // namespace roadstereo

@@ -51,7 +51,7 @@ class Optimiser {
     if (track_.is_used()) {  // with what the fixes prove to be
       constexpr int most_solutions = 4;
       for (int i = 0; i < most_solutions && track_.take_noise(i == 0); ++i) problem = solve(taken);
-      if (track_.hold_unknown(*problem)) problem = solve(taken);
+      for (bool again = track_.hold_unknown(*problem); again; again = track_.take_noise(false)) problem = solve(taken);
     }
     if (!taken.empty()) {
       taken = agreeing(*problem);

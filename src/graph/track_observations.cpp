@@ -7,16 +7,16 @@ namespace roadstereo {
 namespace {
 
 std::vector<TrackObservation> fixes_along(const PoseCurve& piece, const FixCurve& curve, double time_offset_s,
-                                          double max_gap_s) {
+                                          double covered_offset_s, double max_gap_s) {
   const std::vector<PositionFix>& fixes = curve.fixes();
-  const double from_s = piece.nodes().front().time_s + time_offset_s;
-  const double to_s = piece.nodes().back().time_s + time_offset_s;
+  const double from_s = piece.nodes().front().time_s + covered_offset_s;
+  const double to_s = piece.nodes().back().time_s + covered_offset_s;
   auto fix = std::lower_bound(fixes.begin(), fixes.end(), from_s,
                               [](const PositionFix& one, double time_s) { return one.time_s < time_s; });
   std::vector<TrackObservation> found;
   for (; fix != fixes.end() && fix->time_s <= to_s; ++fix) {
+    if (!piece.covers(fix->time_s - covered_offset_s, max_gap_s)) continue;
     const double time_s = fix->time_s - time_offset_s;
-    if (!piece.covers(time_s, max_gap_s)) continue;
     const bool has_z = !std::isnan(fix->position_m[2]);
     const Eigen::Vector3d& position = curve.position(static_cast<std::size_t>(fix - fixes.begin()));
     found.push_back(
@@ -43,11 +43,11 @@ std::vector<TrackObservation> between_fixes(const PoseCurve& piece, const FixCur
 }  // namespace
 
 std::vector<TrackObservation> observe_track(const std::vector<PoseCurve>& pieces, const FixCurve& curve,
-                                            double time_offset_s, double max_gap_s) {
+                                            double time_offset_s, double covered_offset_s, double max_gap_s) {
   constexpr std::size_t least = 3;  // two tell no direction when they are near each other
   std::vector<TrackObservation> all;
   for (const PoseCurve& piece : pieces) {
-    std::vector<TrackObservation> found = fixes_along(piece, curve, time_offset_s, max_gap_s);
+    std::vector<TrackObservation> found = fixes_along(piece, curve, time_offset_s, covered_offset_s, max_gap_s);
     if (found.size() < least) found = between_fixes(piece, curve, time_offset_s);
     all.insert(all.end(), found.begin(), found.end());
   }

@@ -29,10 +29,11 @@ struct TrackObservation {
   }
 };
 
-/// Positions of the track along pieces of the trajectory: the fixes between frames not farther apart than `max_gap_s`.
+/// Positions of the track along pieces of the trajectory: the fixes that are between frames not farther apart than
+/// `max_gap_s` at the time offset `covered_offset_s`, at the time offset `time_offset_s`, which may be another one.
 /// A piece with fewer than three of them has, at the times of its frames, the positions between fixes. The observations
 /// point to the pieces.
 std::vector<TrackObservation> observe_track(const std::vector<PoseCurve>& pieces, const FixCurve& curve,
-                                            double time_offset_s, double max_gap_s);
+                                            double time_offset_s, double covered_offset_s, double max_gap_s);
 
 }  // namespace roadstereo

@@ -114,6 +114,28 @@ TEST(TimeOffset, IsThatOfClocksThatRunTogetherWhereLittleIsTold) {
   }
 }
 
+/// A receiver that repeats one altitude, while the camera climbs by 0.5 m and sinks: on a straight at constant speed
+/// that tells no time, however well the rest fits. A clock that leaves out the fixes of the climb is no better one.
+TEST(TimeOffset, IsNotThatOfFixesLeftOut) {
+  for (const double noise_m : {0.0, 0.015}) {
+    for (unsigned seed = 1; seed <= (noise_m > 0 ? 4 : 1); ++seed) {
+      PoseGraphInput input = Drive{at_constant_speed, noise_m, 0, seed}.input();
+      for (std::size_t i = 0; i < input.trajectory.frames.size(); ++i) {
+        const auto climb_m = [](std::size_t frame) {
+          return 0.25 - 0.25 * std::cos(turns_per_s * 8 / 17 * frame_s * static_cast<double>(frame));
+        };
+        input.trajectory.frames[i].camera_to_world[11] += climb_m(i);
+        if (i > 0) input.links[i - 1].motion[11] = climb_m(i) - climb_m(i - 1);  // the camera's z axis points down
+      }
+      const PoseGraphResult result = optimise_poses(input);
+      ASSERT_TRUE(result.track) << result.track_unused;
+      EXPECT_EQ(result.track->time_offset_s.value, 0) << noise_m << ' ' << seed;
+      EXPECT_FALSE(result.track->time_offset_found) << noise_m << ' ' << seed;
+      EXPECT_NEAR(result.trajectory.frames[100].camera_to_world[3], at_constant_speed(10), 0.05) << noise_m;
+    }
+  }
+}
+
 /// Changes that do not repeat: else several offsets fit.
 double at_random_speed(double time_s) {
   return 4 * time_s + 2 * std::sin(0.5 * time_s) + 1.5 * std::sin(0.83 * time_s);
