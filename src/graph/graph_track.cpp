@@ -141,12 +141,17 @@ std::vector<int> GraphTrack::unknown_lever_axes(PoseGraphProblem& solution) cons
 
 /// Whether the track tells the time offset: at least twice as well as it was known before, and, where the expected
 /// one fits, closer than clocks agree that run together, or as one that such clocks are less likely to have (of two
-/// normal distributions, with their standard deviation and with that of clocks that do not).
+/// normal distributions, with their standard deviation and with that of clocks that do not). An offset at which most of
+/// the fixes lie outside of the recording is none: they would be judged by how the camera might have gone on.
 bool GraphTrack::finds_time_offset(PoseGraphProblem& solution) const {
   constexpr double together_sd_s = 0.05;
   const double apart_sd_s = std::min(options_.time_offset_sd_s, options_.max_time_offset_s);
   const double sd_s = solution.track_deviations()[3];
   if (2 * sd_s >= apart_sd_s) return false;
+  const auto left = std::count_if(observations_.begin(), observations_.end(), [&](const TrackObservation& one) {
+    return one.way->covers(one.time_s - unknowns_.time_offset_s, options_.max_fix_gap_s);
+  });
+  if (2 * static_cast<std::size_t>(left) < observations_.size()) return false;
   if (aligned_offset_s_ != 0 || 2 * sd_s < together_sd_s) return true;
   const auto deviance = [&](double clocks_sd_s) {
     const double variance = clocks_sd_s * clocks_sd_s + sd_s * sd_s;
