@@ -60,4 +60,16 @@ double extent(const std::vector<TrackMatch>& matches) {
   return largest;
 }
 
+Spread spread(const std::vector<TrackMatch>& matches) {
+  Eigen::Vector2d frame = Eigen::Vector2d::Zero(), fix = Eigen::Vector2d::Zero();
+  const auto count = static_cast<double>(matches.size());
+  for (const TrackMatch& match : matches) frame += match.frame / count, fix += match.fix / count;
+  double of_frames = 0, of_fixes = 0;
+  for (const TrackMatch& match : matches) {
+    of_frames += (match.frame - frame).squaredNorm() / count;
+    of_fixes += (match.fix - fix).squaredNorm() / count;
+  }
+  return {std::sqrt(of_frames), std::sqrt(of_fixes)};
+}
+
 }  // namespace roadstereo

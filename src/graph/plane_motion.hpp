@@ -36,4 +36,10 @@ PlaneMotionFit fit_plane_motion(const std::vector<TrackMatch>& matches);
 /// Largest distance of a frame from the mean of all.
 double extent(const std::vector<TrackMatch>& matches);
 
+/// Root mean square distance from their mean of the frames, and of their fixes.
+struct Spread {
+  double frames_m = 0, fixes_m = 0;
+};
+Spread spread(const std::vector<TrackMatch>& matches);
+
 }  // namespace roadstereo

@@ -147,6 +147,18 @@ class Aligner {
     return largest;
   }
 
+  /// Of the pieces that the fixes anchor the one that goes farthest.
+  Spread largest_spread(double offset_s) const {
+    Spread largest;
+    for (std::size_t piece = 0; piece < level_.size(); ++piece) {
+      const std::vector<TrackMatch> matches = matches_of(piece, offset_s, false);
+      if (!anchors(matches)) continue;
+      const Spread one = spread(matches);
+      if (one.frames_m > largest.frames_m) largest = one;
+    }
+    return largest;
+  }
+
   bool has_vertical() const {
     return std::any_of(level_.begin(), level_.end(), [](const auto& level) { return level.has_value(); });
   }
@@ -239,13 +251,17 @@ class Aligner {
 
 /// Why fixes are refused; empty if they fit.
 std::string refusal(const Aligner& aligner, double offset_s) {
-  constexpr double better = 3, noticeable = 0.01;
+  constexpr double better = 3, noticeable = 0.01, standing = 0.25;
   const OffsetFit straight = aligner.fit(offset_s, false);
   const OffsetFit mirrored = aligner.fit(aligner.best_offset(true), true);
+  const Spread spread = aligner.largest_spread(offset_s);
   std::ostringstream text;
   text.precision(3);
-  if (straight.median_m > better * mirrored.median_m &&
-      straight.median_m > noticeable * aligner.largest_extent(offset_s)) {
+  if (spread.fixes_m < standing * spread.frames_m) {
+    text << "the track stands still while the camera moves: its positions are within " << spread.fixes_m
+         << " m of their mean, those of the camera within " << spread.frames_m << " m";
+  } else if (straight.median_m > better * mirrored.median_m &&
+             straight.median_m > noticeable * aligner.largest_extent(offset_s)) {
     text << "the positions of the track fit the trajectory only mirrored (" << mirrored.median_m << " m instead of "
          << straight.median_m << " m, median): east and west, or latitude and longitude, may be exchanged";
   } else if (!straight.fits()) {

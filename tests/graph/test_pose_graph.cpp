@@ -386,6 +386,27 @@ TEST(PoseGraphTrack, MirroredTrackIsRefused) {
   EXPECT_NEAR(result.trajectory.frames[0].camera_to_world[3], 0, 1e-12);
 }
 
+// A receiver that repeats its last position, exactly or as well as it can, fits within its standard errors of 20 m.
+TEST(PoseGraphTrack, TrackThatStandsStillIsRefused) {
+  for (const double noise_m : {0.0, 0.5}) {
+    Survey survey;
+    survey.noise_m = noise_m;
+    PoseGraphInput input = survey.input();
+    const PoseGraphInput exact = Survey{}.input();
+    for (std::size_t i = 0; i < input.fixes.size(); ++i) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double noise = input.fixes[i].position_m[axis] - exact.fixes[i].position_m[axis];
+        input.fixes[i].position_m[axis] = (axis == 0 ? 1000 : 0) + noise;
+      }
+      input.fixes[i].horizontal_sd_m = 20;
+    }
+    const PoseGraphResult result = optimise_poses(input);
+    EXPECT_FALSE(result.track);
+    EXPECT_TRUE(result.track_contradicts);
+    EXPECT_NE(result.track_unused.find("stands still"), std::string::npos) << result.track_unused;
+  }
+}
+
 TEST(PoseGraphTrack, TrackOfAnotherFlightIsRefused) {
   PoseGraphInput input = Survey{}.input();
   for (PositionFix& fix : input.fixes) fix.position_m = {3 * fix.time_s, 20 * std::sin(0.7 * fix.time_s), 2};
