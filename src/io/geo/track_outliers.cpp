@@ -16,6 +16,28 @@ bool comes_back(const TrackPoint& from, const std::vector<TrackPoint>& points, s
   return false;
 }
 
+/// Removes the stretches that are shorter than the longest one and that it cannot be reached from, or they from it.
+void drop_other_stretches(std::vector<TrackPoint>& points, std::vector<TrackPoint>& outliers) {
+  std::vector<std::vector<TrackPoint>> stretches;
+  for (const TrackPoint& point : points) {
+    if (stretches.empty() || !is_reachable(stretches.back().back(), point)) stretches.emplace_back();
+    stretches.back().push_back(point);
+  }
+  const auto longest = std::max_element(stretches.begin(), stretches.end(),
+                                        [](const auto& one, const auto& other) { return one.size() < other.size(); });
+  points.clear();
+  for (auto stretch = stretches.begin(); stretch != stretches.end(); ++stretch) {
+    const bool before = stretch < longest;
+    const bool reachable =
+        before ? is_reachable(stretch->back(), longest->front()) : is_reachable(longest->back(), stretch->front());
+    const bool kept = stretch == longest || stretch->size() == longest->size() || reachable;
+    std::vector<TrackPoint>& side = kept ? points : outliers;
+    side.insert(side.end(), stretch->begin(), stretch->end());
+  }
+  std::sort(outliers.begin(), outliers.end(),
+            [](const TrackPoint& one, const TrackPoint& other) { return one.time_s < other.time_s; });
+}
+
 }  // namespace
 
 bool is_reachable(const TrackPoint& from, const TrackPoint& to) {
@@ -43,6 +65,7 @@ std::vector<TrackPoint> take_outliers(std::vector<TrackPoint>& points, const Tra
     kept.push_back(points[i]);
   }
   points = std::move(kept);
+  drop_other_stretches(points, outliers);
   return outliers;
 }
 

@@ -10,8 +10,8 @@ namespace roadstereo::io {
 bool is_reachable(const TrackPoint& from, const TrackPoint& to);
 
 /// Removes and returns the fixes that cannot be reached from the one before while one after them, within the largest
-/// gap, can; of the first and the last fix those that have no such neighbour. Where the whole track goes on elsewhere
-/// nothing is removed.
+/// gap, can; of the first and the last fix those that have no such neighbour; and stretches, however long, that cannot
+/// be reached from the longest one, or it from them. Of two that are as long as each other none is removed.
 std::vector<TrackPoint> take_outliers(std::vector<TrackPoint>& points, const TrackOptions& options);
 
 }  // namespace roadstereo::io

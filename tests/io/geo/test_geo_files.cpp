@@ -134,9 +134,9 @@ std::string frames_geojson(std::span<const GeoFrame> rows) {
 /// A metre a second northwards, a gap, then a metre a second across the antimeridian.
 Track broken_track() {
   constexpr double metre_deg = 1 / metres_of_latitude;
-  return Track({{noon, 0, 8},
-                {noon + 1, metre_deg, 8},
-                {noon + 2, 2 * metre_deg, 8},
+  return Track({{noon, 0, 179.9375},
+                {noon + 1, metre_deg, 179.9375},
+                {noon + 2, 2 * metre_deg, 179.9375},
                 {noon + 100, 0, 180 - 3 * metre_deg},
                 {noon + 101, 0, 180 - 2 * metre_deg},
                 {noon + 102, 0, -180 + 2 * metre_deg},
@@ -512,7 +512,7 @@ TEST_F(Ogrinfo, OpensGeoPackage) {
       write_flight(),
       {"using driver `GPKG' successful", "Layer name: frames", "Layer name: damages", "Layer name: sightings",
        "Layer name: footprints", "Layer name: track", "Layer name: layer_styles", "POLYGON ((",
-       "time_utc (DateTime) = 2024/05/01 12:01:00+00", "cut_by_border (Integer(Boolean)) = 1", "LINESTRING (8 0,"});
+       "time_utc (DateTime) = 2024/05/01 12:01:00+00", "cut_by_border (Integer(Boolean)) = 1", "LINESTRING (179.9375 0.0,"});
 }
 
 TEST_F(Ogrinfo, OpensGeoJson) {

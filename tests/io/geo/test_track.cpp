@@ -109,6 +109,19 @@ TEST(TrackOutliers, AreLeftOut) {
   }
 }
 
+// A receiver that is 5.6 km off for longer than a gap may last: at the start, between, and at the end.
+TEST(TrackOutliers, AreWholeStretches) {
+  for (const auto& [first, last] : {std::pair{0, 19}, {30, 49}, {80, 99}}) {
+    std::vector<TrackPoint> points = eastward(100);
+    for (int i = first; i <= last; ++i) points[static_cast<std::size_t>(i)].lat_deg += 0.05;
+    const Track track(points);
+    ASSERT_EQ(track.outliers().size(), 20U) << first;
+    EXPECT_EQ(track.outliers().front().time_s, noon + first);
+    EXPECT_EQ(track.outliers().back().time_s, noon + last);
+    for (const TrackPoint& point : track.points()) EXPECT_NEAR(point.lat_deg, 50, 1e-9) << first;
+  }
+}
+
 TEST(TrackOutliers, NoneWhereTrackGoesOnElsewhere) {
   std::vector<TrackPoint> points = eastward(10);
   for (std::size_t i = 5; i < points.size(); ++i) points[i].lat_deg += 1;
