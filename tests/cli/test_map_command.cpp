@@ -108,6 +108,19 @@ TEST_F(MapCommand, FramesOfStandingCameraCountOnce) {
   EXPECT_TRUE(read_text(folder_ / "map/sigma.tif") == read_text(folder_ / "once/sigma.tif"));
 }
 
+// Six broken pictures, each with its own name, are one reason.
+TEST_F(MapCommand, SaysReasonsOfFramesOnce) {
+  const Outcome made = run("synth --scene nadir --frames 8 --flight step=0.1 --size 160x90 --output flight --quiet");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  for (int i = 2; i < 8; ++i) write("flight/left/00000" + std::to_string(i) + ".png", "no picture");
+  const Outcome outcome = map("--trajectory flight/trajectory_kitti.txt --quiet");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json reasons = json_file("map/map.json")["reasons"];
+  ASSERT_EQ(reasons.size(), 1U) << reasons;
+  EXPECT_NE(reasons[0].dump().find("000002.png"), std::string::npos) << reasons;
+  EXPECT_NE(reasons[0].dump().find(", and 5 more like it"), std::string::npos) << reasons;
+}
+
 // The number of frames is an estimate for bags and videos: what has been read counts.
 TEST_F(MapCommand, SaysWhereRecordingEnds) {
   make_flight("160x90");

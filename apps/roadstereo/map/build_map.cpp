@@ -116,7 +116,7 @@ class MapBuilder {
     built.origin_m = state_.origin_m;
     built.frames = state_.frames;
     built.mapped = state_.mapped;
-    built.reasons = state_.reasons;
+    built.reasons = counted_reasons();
     return built;
   }
 
@@ -369,10 +369,31 @@ class MapBuilder {
                      size_m[0], size_m[1], cells, state_.cell_m, max_raster_cells, frame, distance_m(farthest)));
   }
 
+  /// Keeps one of each kind, and of the first kinds only: those of frames differ by names and numbers.
   void add_reason(const std::string& given) {
+    constexpr std::size_t most = 5;
     const std::string reason = io::valid_utf8(given);
+    const auto kind = [](const std::string& text) { return text.substr(0, text.find_first_of("0123456789:")); };
     std::vector<std::string>& reasons = state_.reasons;
-    if (std::find(reasons.begin(), reasons.end(), reason) == reasons.end()) reasons.push_back(reason);
+    const auto same =
+        std::find_if(reasons.begin(), reasons.end(), [&](const std::string& one) { return kind(one) == kind(reason); });
+    if (same != reasons.end()) {
+      if (*same != reason) ++state_.more_of_reason[static_cast<std::size_t>(same - reasons.begin())];
+    } else if (reasons.size() < most) {
+      reasons.push_back(reason);
+      state_.more_of_reason.push_back(0);
+    } else {
+      ++state_.further_reasons;
+    }
+  }
+
+  std::vector<std::string> counted_reasons() const {
+    std::vector<std::string> counted = state_.reasons;
+    for (std::size_t i = 0; i < counted.size(); ++i) {
+      if (state_.more_of_reason[i] > 0) counted[i] += fmt::format(", and {} more like it", state_.more_of_reason[i]);
+    }
+    if (state_.further_reasons > 0) counted.push_back(fmt::format("{} more for other reasons", state_.further_reasons));
+    return counted;
   }
 
   const MapPlan& plan_;

@@ -64,6 +64,8 @@ Json state_json(const MapState& state) {
           {"frames", state.frames},
           {"mapped", state.mapped},
           {"reasons", state.reasons},
+          {"more_of_reason", state.more_of_reason},
+          {"further_reasons", state.further_reasons},
           {"day_names", state.day_names},
           {"cell_m", state.cell_m},
           {"origin_m", state.origin_m},
@@ -85,6 +87,9 @@ MapState read_state(const Json& json) {
   state.frames = json.at("frames").get<std::int64_t>();
   state.mapped = json.at("mapped").get<std::int64_t>();
   state.reasons = json.at("reasons").get<std::vector<std::string>>();
+  state.more_of_reason = json.value("more_of_reason", std::vector<std::int64_t>());
+  state.more_of_reason.resize(state.reasons.size());  // an earlier version had each reason once
+  state.further_reasons = json.value("further_reasons", std::int64_t{0});
   state.day_names = json.at("day_names").get<std::vector<std::string>>();
   state.cell_m = json.at("cell_m").get<double>();
   state.origin_m = json.at("origin_m").get<std::array<double, 3>>();

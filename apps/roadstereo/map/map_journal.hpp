@@ -39,6 +39,8 @@ struct MapState {
   std::optional<PipelineState> pipeline;  ///< absent before its first valid pair
   std::int64_t frames = 0, mapped = 0;
   std::vector<std::string> reasons, day_names;
+  std::vector<std::int64_t> more_of_reason;  ///< of the same kind as each of `reasons`, with other numbers
+  std::int64_t further_reasons = 0;          ///< of other kinds
   double cell_m = 0;
   std::array<double, 3> origin_m{};
   RigidTransform world_to_map{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
