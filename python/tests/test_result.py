@@ -45,6 +45,8 @@ class Numbers(unittest.TestCase):
         self.assertEqual(result.spread.road_share, written["road_fraction"])
         self.assertEqual(result.rows.median_px, written["rows"]["median_px"])
         self.assertEqual(result.rows.points, written["rows"]["points"])
+        self.assertEqual(result.blur.variance_px2, written["blur"]["difference_px2"])
+        self.assertEqual(result.smoothed_px2, written["blur"]["smoothed_px2"])
         self.assertEqual(result.warnings, written["warnings"])
 
     def test_road_equals_result_json(self):
