@@ -67,7 +67,7 @@ Format recognise(const std::string& text) {
   if (contains(text, "\"rectified.0.fx\"")) return Format::realsense;
   if (has_any_key(colon, {"T_BS"})) return Format::euroc;
   if (is_opencv(text)) return Format::opencv_stereo;
-  if (has_any_key(colon, {"T_cn_cnm1"})) return Format::kalibr;
+  if (has_any_key(colon, {"T_cn_cnm1", "distortion_coeffs"})) return Format::kalibr;
   if (contains(text, "[LEFT_CAM_")) return Format::zed;
   if (is_camera_info(colon)) return Format::ros_camera_info;
   if (has_any_key(colon, {"focal_px", "cx_px", "cy_px", "baseline_m"})) return Format::plain_yaml;

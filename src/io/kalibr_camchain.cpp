@@ -72,6 +72,7 @@ cv::Matx44d read_pose(const CalibrationText& file, const YAML::Node& sensor) {
 
 CalibrationFile read_kalibr_camchain(const CalibrationText& file) {
   const YAML::Node root = load_yaml(file);
+  if (root["cam0"] && !root["cam1"]) fail(file.path, ": the file has one camera; a pair is needed, cam0 and cam1");
   const YAML::Node left = require_camera(file, root, "cam0"), right = require_camera(file, root, "cam1");
   const cv::Matx44d left_to_right = read_nested_transform(file, right, "T_cn_cnm1");
   const StereoRig rig = join_cameras(read_camera(file, left, "distortion_coeffs"),

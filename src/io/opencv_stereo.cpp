@@ -34,7 +34,7 @@ class Storage {
   }
 
   /// Returns the first existing entry of `keys` and its name, or null.
-  const OpenCvEntry* find(std::initializer_list<const char*> keys, std::string& name) const {
+  const OpenCvEntry* find(const std::vector<const char*>& keys, std::string& name) const {
     for (const char* key : keys) {
       const auto found = entries_.find(key);
       if (found == entries_.end()) continue;
@@ -73,15 +73,24 @@ std::vector<double> values_of(const Storage& storage, const std::string& key, co
   return values;
 }
 
-template <std::size_t Count>
-std::array<double, Count> read_matrix(const Storage& storage, std::initializer_list<const char*> keys) {
+/// A figure and its names in the files of calibration programs, the usual one first.
+struct Name {
+  std::vector<const char*> keys;
+};
+const Name k1{{"K1", "M1", "cameraMatrix1", "left_camera_matrix"}};
+const Name k2{{"K2", "M2", "cameraMatrix2", "right_camera_matrix"}};
+const Name d1{{"D1", "distCoeffs1", "left_distortion"}}, d2{{"D2", "distCoeffs2", "right_distortion"}};
+const Name rotation{{"R", "rotation"}}, translation{{"T", "translation"}};
+
+bool has(const Storage& storage, const Name& name) {
   std::string key;
-  const OpenCvEntry* entry = storage.find(keys, key);
-  if (entry == nullptr) {
-    std::string other;
-    if (keys.size() > 1) other.append(" (or ").append(*(keys.begin() + 1)).append(")");
-    fail(storage.path(), ": ", *keys.begin(), other, " is missing");
-  }
+  return storage.find(name.keys, key) != nullptr;
+}
+
+template <std::size_t Count>
+std::array<double, Count> read_matrix(const Storage& storage, const Name& name) {
+  std::string key;
+  const OpenCvEntry* entry = storage.find(name.keys, key);
   const std::vector<double> values = values_of(storage, key, *entry);
   if (values.size() != Count) {
     fail(storage.path(), ": ", key, " has ", values.size(), " values; it must have ", Count);
@@ -91,23 +100,60 @@ std::array<double, Count> read_matrix(const Storage& storage, std::initializer_l
   return matrix;
 }
 
-std::vector<double> read_distortion(const Storage& storage, const char* key) {
-  std::string name;
-  const OpenCvEntry* entry = storage.find({key}, name);
+std::vector<double> read_distortion(const Storage& storage, const Name& name) {
+  std::string key;
+  const OpenCvEntry* entry = storage.find(name.keys, key);
   return entry == nullptr ? std::vector<double>{} : values_of(storage, key, *entry);
 }
 
-/// A rectified pair has no distortion. One of a lens must not get lost because it has another name.
-void require_distortion(const Storage& storage) {
-  std::string name;
-  const bool left = storage.find({"D1"}, name) != nullptr, right = storage.find({"D2"}, name) != nullptr;
-  const std::string other = storage.first_key_with("dist");
-  if (left == right && (left || other.empty())) return;
-  fail(storage.path(), ": ", left ? "D2" : "D1", " is missing", other.empty() ? "" : "; there is a key " + other,
-       "; a lens without distortion has 0 0 0 0 0");
+/// "R and T", or "K1, D1 and K2".
+std::string list_text(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+  }
+  return text;
 }
 
-int read_side(const Storage& storage, std::initializer_list<const char*> keys, std::size_t index) {
+/// Throws Error naming all that is missing. A rectified pair has no distortion; one of a lens must not get lost because
+/// it has another name.
+void require_all(const Storage& storage) {
+  std::vector<std::string> missing;
+  const bool left = has(storage, d1), right = has(storage, d2);
+  const std::string other = left || right ? "" : storage.first_key_with("dist");
+  const bool matrices = has(storage, k1) && has(storage, k2),
+             poses = has(storage, rotation) && has(storage, translation);
+  const bool needs_distortion = left != right || !other.empty() || !matrices;
+  const auto require = [&](const Name& name) {
+    if (!has(storage, name)) missing.emplace_back(name.keys.front());
+  };
+  require(k1);
+  if (needs_distortion) require(d1);
+  require(k2);
+  if (needs_distortion) require(d2);
+  require(rotation);
+  require(translation);
+  if (missing.empty()) return;
+  std::string hint;
+  if (!other.empty()) hint += "; there is a key " + other;
+  if (matrices != poses) {
+    hint += matrices ? "; extrinsics in another file are a second --calibration"
+                     : "; intrinsics in another file are a first --calibration";
+  }
+  if (!matrices) hint += "; other names are M1 or cameraMatrix1, and distCoeffs1";
+  if (matrices && left != right) hint += "; a lens without distortion has 0 0 0 0 0";
+  fail(storage.path(), ": ", list_text(missing), missing.size() > 1 ? " are missing" : " is missing", hint);
+}
+
+/// Whether the file has nothing but the projection matrices of a rectified pair.
+bool is_rectified(const Storage& storage) {
+  const auto any = [&](std::initializer_list<const Name*> names) {
+    return std::any_of(names.begin(), names.end(), [&](const Name* name) { return has(storage, *name); });
+  };
+  return has(storage, {{"P1"}}) && has(storage, {{"P2"}}) && !any({&k1, &k2, &d1, &d2, &rotation, &translation});
+}
+
+int read_side(const Storage& storage, const std::vector<const char*>& keys, std::size_t index) {
   std::string key;
   const OpenCvEntry* entry = storage.find(keys, key);
   if (entry == nullptr) return 0;
@@ -139,25 +185,51 @@ bool read_fisheye(const Storage& storage) {
   fail(storage.path(), ": ", key, " is ", entry->words[0], "; it must be radtan or equidistant (fisheye)");
 }
 
+int read_width(const Storage& storage) {
+  return read_side(storage, {"image_width", "width", "imageSize", "image_size"}, 0);
+}
+
+int read_height(const Storage& storage) {
+  return read_side(storage, {"image_height", "height", "imageSize", "image_size"}, 1);
+}
+
 StereoRig read_rig(const Storage& storage) {
+  require_all(storage);
   StereoRig rig;
-  rig.left_matrix = read_matrix<9>(storage, {"K1", "M1"});
-  rig.right_matrix = read_matrix<9>(storage, {"K2", "M2"});
-  require_distortion(storage);
-  rig.left_distortion = read_distortion(storage, "D1");
-  rig.right_distortion = read_distortion(storage, "D2");
-  rig.rotation = read_matrix<9>(storage, {"R"});
-  rig.translation_m = read_matrix<3>(storage, {"T"});
+  rig.left_matrix = read_matrix<9>(storage, k1);
+  rig.right_matrix = read_matrix<9>(storage, k2);
+  rig.left_distortion = read_distortion(storage, d1);
+  rig.right_distortion = read_distortion(storage, d2);
+  rig.rotation = read_matrix<9>(storage, rotation);
+  rig.translation_m = read_matrix<3>(storage, translation);
   rig.fisheye = read_fisheye(storage);
-  rig.width = read_side(storage, {"image_width", "width", "imageSize", "image_size"}, 0);
-  rig.height = read_side(storage, {"image_height", "height", "imageSize", "image_size"}, 1);
+  rig.width = read_width(storage);
+  rig.height = read_height(storage);
   return rig;
+}
+
+/// P1 and P2 of `stereoRectify`: P2[3] is −focal length × baseline.
+CalibrationFile read_rectified(const Storage& storage) {
+  const std::array<double, 12> left = read_matrix<12>(storage, {{"P1"}}), right = read_matrix<12>(storage, {{"P2"}});
+  StereoCalibration calibration;
+  calibration.focal_px = left[0];
+  calibration.cx_px = left[2];
+  calibration.cy_px = left[6];
+  calibration.disparity_offset_px = right[2] - left[2];
+  calibration.baseline_m = left[0] != 0 ? (left[3] - right[3]) / left[0] : 0;
+  calibration.width = read_width(storage);
+  calibration.height = read_height(storage);
+  check_rectified(calibration, storage.path(), {"P1[0]", "P1[2]", "P1[6]", "P1[3] and P2[3]"});
+  check_one_projection(storage.path(), {"P1", left[0], left[6]}, {"P2", right[0], right[6]});
+  check_square_pixels(left[0], left[5], storage.path(), "P1");
+  return {"OpenCV P1/P2", calibration, std::nullopt};
 }
 
 }  // namespace
 
 CalibrationFile read_opencv_stereo(const CalibrationText& file, const CalibrationText* second) {
   const Storage storage(file, second);
+  if (is_rectified(storage)) return read_rectified(storage);
   return describe_rig(read_rig(storage), "OpenCV stereo", storage.path());
 }
 

@@ -1,9 +1,28 @@
 #include "io/yaml_text.hpp"
+#include "roadstereo/error.hpp"
 
 namespace roadstereo::io {
+namespace {
+
+void require_all(const CalibrationText& file, const YAML::Node& root) {
+  std::string missing;
+  std::size_t count = 0;
+  for (const char* key : {"focal_px", "cx_px", "cy_px", "baseline_m"}) {
+    if (root[key]) continue;
+    missing += (count++ == 0 ? "" : ", ") + std::string(key);
+  }
+  if (count == 0) return;
+  const bool centre = !root["cx_px"] || !root["cy_px"];
+  fail(file.path, ": ", missing, count > 1 ? " are missing" : " is missing",
+       centre ? "; an unknown principal point is about the middle of the images, (width − 1) / 2 and (height − 1) / 2"
+              : "");
+}
+
+}  // namespace
 
 CalibrationFile read_plain_yaml(const CalibrationText& file) {
   const YAML::Node root = load_yaml(file);
+  require_all(file, root);
   StereoCalibration calibration;
   calibration.focal_px = yaml_number(file, root, "focal_px");
   calibration.cx_px = yaml_number(file, root, "cx_px");

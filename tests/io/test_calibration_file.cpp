@@ -185,7 +185,8 @@ std::string without(std::string text, const std::string& word, const std::string
 TEST_F(ReadCalibration, DistortionOfOpenCvStereoIsNotLost) {
   const std::string good = opencv_file("K", "-0.12, 0, 0");
   expect_refused(without(good, "D2:", "E2:"), "D2 is missing");
-  expect_refused(without(without(good, "D1:", "dist1:"), "D2:", "dist2:"), "D1 is missing; there is a key dist1");
+  expect_refused(without(without(good, "D1:", "dist1:"), "D2:", "dist2:"),
+                 "D1 and D2 are missing; there is a key dist1");
   expect_refused(good + "distortion_model: mei\n", "distortion_model is mei");
   const std::string four = opencv_file("K", "-0.12, 0, 0", "0.1, -0.2, 0.01, 0.02");
   const std::string short_file = without(without(four, "cols: 5", "cols: 4"), "cols: 5", "cols: 4");
@@ -225,17 +226,59 @@ TEST_F(ReadCalibration, ReadsOpenCvStereoInTwoFiles) {
   EXPECT_EQ(file.rig->translation_m[0], -0.12);
 }
 
+// Whoever adds one key after the other reads six messages.
+TEST_F(ReadCalibration, NamesAllMissingKeys) {
+  const std::string whole = opencv_file("K", "-0.12, 0., 0.");
+  const std::size_t cut = whole.find("R: ");
+  expect_refused(whole.substr(0, cut), "R and T are missing; extrinsics in another file are a second --calibration");
+  expect_refused("%YAML:1.0\n---\n" + whole.substr(cut), "K1, D1, K2 and D2 are missing; intrinsics in another file");
+  expect_refused("%YAML:1.0\n---\nmtxL: 1\n", "K1, D1, K2, D2, R and T are missing");
+  expect_refused("focal_px: 500\nbaseline_m: 0.1\n", "cx_px, cy_px are missing; an unknown principal point is about");
+  expect_refused("baseline_m: 0.1\ncx_px: 1\ncy_px: 1\n", "focal_px is missing");
+}
+
+TEST_F(ReadCalibration, ReadsOtherNamesOfOpenCv) {
+  std::string text = opencv_file("K", "-0.12, 0., 0.");
+  const CalibrationFile usual = read_calibration(write(text));
+  for (const auto& [from, to] : {std::pair("K1:", "cameraMatrix1:"), std::pair("K2:", "cameraMatrix2:"),
+                                 std::pair("D1:", "distCoeffs1:"), std::pair("D2:", "distCoeffs2:")}) {
+    text = replaced(text, from, to);
+  }
+  const CalibrationFile file = read_calibration(write(text));
+  ASSERT_TRUE(file.rig);
+  EXPECT_EQ(file.rig->right_matrix, usual.rig->right_matrix);
+  EXPECT_EQ(file.rig->left_distortion, usual.rig->left_distortion);
+}
+
+// As `stereoRectify` writes them: P2[3] is −focal length × baseline, 500 px × 0.12 m.
+TEST_F(ReadCalibration, ReadsProjectionsOfOpenCvAlone) {
+  const auto matrix = [](const std::string& key, const std::string& data) {
+    return key + ": !!opencv-matrix\n   rows: 3\n   cols: 4\n   dt: d\n   data: [ " + data + " ]\n";
+  };
+  const std::string text = "%YAML:1.0\n---\n" + matrix("P1", "500., 0., 320., 0., 0., 500., 240., 0., 0., 0., 1., 0.") +
+                           matrix("P2", "500., 0., 322., -60., 0., 500., 240., 0., 0., 0., 1., 0.");
+  const StereoCalibration calibration = rectified(text + "image_width: 640\nimage_height: 480\n");
+  EXPECT_EQ(calibration.focal_px, 500);
+  EXPECT_EQ(calibration.cx_px, 320);
+  EXPECT_EQ(calibration.cy_px, 240);
+  EXPECT_DOUBLE_EQ(calibration.baseline_m, 0.12);
+  EXPECT_EQ(calibration.disparity_offset_px, 2);
+  EXPECT_EQ(calibration.width, 640);
+  const std::string whole = opencv_file("K", "-0.12, 0., 0.");
+  expect_refused(text + whole.substr(whole.find("R: ")), "K1, D1, K2 and D2 are missing");  // of raw pictures
+}
+
 TEST_F(ReadCalibration, RejectsBadOpenCvStereo) {
   const std::string good = opencv_file("K", "-0.12, 0., 0.");
   expect_refused(opencv_file("K", "-60., 0., 0."), "the baseline is 60; it must be between 0.005 and 10 metres");
   expect_refused(opencv_file("K", "0., 0., 0."), "the baseline is 0;");
   expect_refused(opencv_file("K", "-0.12, .Nan, 0."), "T is .Nan");
-  expect_refused(opencv_file("X", "-0.12, 0., 0."), "K1 (or M1) is missing");
+  expect_refused(opencv_file("X", "-0.12, 0., 0."), "K1 and K2 are missing; ");
   expect_refused(replaced(good, "T: ", "U: "), "T is missing");
   expect_refused(replaced(good, "500.", "3."), "the focal length is 3;");
   expect_refused(replaced(good, "0.8, -0.6", "0.8, -0.7"), "R is not a rotation");
   expect_refused(replaced(good, "data: [ 500.", "data: [ [ 500."), "invalid YAML");
-  expect_refused("%YAML:1.0\n---\nK1: hello\n", "K1 must be a matrix");
+  expect_refused(replaced(good, "K1: ", "K1: hello\nX1: "), "K1 must be a matrix");
   expect_refused("<?xml version=\"1.0\"?>\n<opencv_storage>\n<K1>", "");
 }
 

@@ -121,6 +121,7 @@ TEST_F(CameraCalibration, ReadsKalibrCamchain) {
   EXPECT_TRUE(read_calibration(write(replaced(none, "radtan", "none"))).rig->left_distortion.empty());
   expect_refused(replaced(kalibr, "pinhole", "ds"), "camera_model is ds");
   expect_refused(replaced(kalibr, "cam0", "cam9"), "cam0 is missing");
+  expect_refused(kalibr.substr(0, kalibr.find("cam1:")), "the file has one camera; a pair is needed");
   expect_refused(replaced(kalibr, "[386.8, 388.2, 317.0, 241.8]", "[386.8]"), "intrinsics has 1 values");
   expect_refused(replaced(kalibr, "  - [0.0, 0.0, 0.0, 1.0]\n", ""), "T_cn_cnm1 must be a list of four rows");
   expect_refused(replaced(kalibr, "-0.05", "-50"), "the baseline is 50");
