@@ -79,7 +79,9 @@ void match(Inspection& inspection) {
 void process(Inspection& inspection) {
   inspection.pair.disparity.empty() ? match(inspection) : use_given_disparity(inspection);
   inspection.threads = resolve_threads(inspection.options.threads);
-  inspection.warnings = inspection.result.warnings;
+  inspection.warnings = inspection.pair.warnings;
+  inspection.warnings.insert(inspection.warnings.end(), inspection.result.warnings.begin(),
+                             inspection.result.warnings.end());
   find_damage_or_warn(inspection.result, inspection.pair.calibration, inspection.options.damage,
                       inspection.options.threads, inspection.damage, inspection.health, inspection.warnings);
   if (inspection.pair.calibration && inspection.result.roll_found) {

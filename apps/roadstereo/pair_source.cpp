@@ -17,8 +17,19 @@ void require_equal_sizes(const StereoPair& pair, const PairFiles& files) {
        " pixels, ", files.right, " has ", pair.right.width, "×", pair.right.height);
 }
 
-void rectify_pair(StereoPair& pair, const io::StereoRig& rig, int threads) {
-  io::RectifiedPair rectified = io::rectify(pair.left, pair.right, rig, threads);
+io::RectifiedPair rectified_pair(const StereoPair& pair, const io::StereoRig& rig, const std::string& source,
+                                 int threads) {
+  try {
+    return io::rectify(pair.left, pair.right, rig, threads);
+  } catch (const SystemError&) {
+    throw;
+  } catch (const Error& error) {
+    fail(source, ": ", error.what());
+  }
+}
+
+void rectify_pair(StereoPair& pair, const io::StereoRig& rig, const std::string& source, int threads) {
+  io::RectifiedPair rectified = rectified_pair(pair, rig, source, threads);
   pair.left = std::move(rectified.left);
   pair.right = std::move(rectified.right);
   pair.calibration = rectified.calibration;
@@ -40,7 +51,10 @@ void apply_calibration(StereoPair& pair, const std::vector<std::string>& paths, 
   if (file.rig && !pair.disparity.empty()) {
     fail(paths[0], ": the rig is not rectified; a disparity map needs the calibration of the rectified pair");
   }
-  if (file.rig) rectify_pair(pair, *file.rig, threads);
+  if (const std::string doubt = file.size_doubt(pair.left.width, pair.left.height); !doubt.empty()) {
+    pair.warnings.push_back("calibration-size: " + paths[0] + ": " + doubt);
+  }
+  if (file.rig) rectify_pair(pair, *file.rig, paths[0], threads);
   if (!pair.calibration) fail(paths[0], ": there is no stereo calibration in this file");
   pair.calibration->validate(pair.left.width, pair.left.height, paths[0]);
 }

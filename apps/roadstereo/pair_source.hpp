@@ -23,9 +23,10 @@ struct StereoPair {
   Frame right;             ///< empty if there is no file
   Image<float> disparity;  ///< of the file; empty if there is none
   std::optional<StereoCalibration> calibration;
-  std::string calibration_format;  ///< empty without a calibration
-  bool rectified_here = false;     ///< rectified by this program
-  double white_level = 0;          ///< sample value of white; 0: maximum of the sample type
+  std::string calibration_format;       ///< empty without a calibration
+  bool rectified_here = false;          ///< rectified by this program
+  std::vector<std::string> warnings{};  ///< of the calibration
+  double white_level = 0;               ///< sample value of white; 0: maximum of the sample type
 };
 
 /// Reads the images, the disparity map and the calibration, and rectifies the pair if necessary, by `threads`

@@ -21,7 +21,7 @@ void StereoCalibration::validate(int image_width, int image_height, const std::s
 
   if (width != 0 && (width != image_width || height != image_height)) {
     fail(source, ": the calibration is for ", width, "×", height, " pixels, but the images have ", image_width, "×",
-         image_height);
+         image_height, ": scale the calibration, or record at ", width, "×", height);
   }
   const double w = image_width;
   const double h = image_height;

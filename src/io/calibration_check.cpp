@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "core/image_limits.hpp"
 #include "io/calibration_formats.hpp"
@@ -115,6 +116,30 @@ void check_rig(const StereoRig& rig, const std::string& source) {
   for (const double value : rig.translation_m) check_finite(value, source, "T");
   const auto& t = rig.translation_m;
   check_baseline(std::hypot(t[0], t[1], t[2]), source, "the length of T");
+}
+
+std::string principal_point_doubt(double cx_px, double cy_px, int width, int height) {
+  // Rectified rigs have the principal point at 0.36 to 0.51 of the size (KITTI, Middlebury): rectification displaces
+  // it. Of pictures scaled to two thirds it is at 0.75; of others, by three quarters say, at the same share of both
+  // sides.
+  constexpr double far = 0.2, both = 0.1, equal_shares = 0.03;
+  const double x = (cx_px + 0.5) / width - 0.5, y = (cy_px + 0.5) / height - 0.5;
+  const bool is_far = std::abs(x) > far || std::abs(y) > far;
+  const bool is_scaled = std::min(std::abs(x), std::abs(y)) > both && std::abs(x - y) < equal_shares;
+  if (!is_far && !is_scaled) return "";
+  const auto side = [](double centre) { return std::to_string(std::max(1L, std::lround(2 * centre + 1))); };
+  std::ostringstream text;
+  text << "it has no image size, and its principal point (" << cx_px << ", " << cy_px
+       << ") lies far from the middle of images of " << width << "×" << height << " pixels: it suggests " << side(cx_px)
+       << "×" << side(cy_px) << "; were the images scaled? Then scale the calibration, too";
+  return text.str();
+}
+
+std::string CalibrationFile::size_doubt(int width, int height) const {
+  if (rectified && rectified->width == 0)
+    return principal_point_doubt(rectified->cx_px, rectified->cy_px, width, height);
+  if (rig && rig->width == 0) return principal_point_doubt(rig->left_matrix[2], rig->left_matrix[5], width, height);
+  return "";
 }
 
 CalibrationFile describe_rig(const StereoRig& rig, const std::string& format, const std::string& source) {

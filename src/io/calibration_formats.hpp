@@ -82,6 +82,9 @@ void check_square_pixels(double fx, double fy, const std::string& source, const 
 /// is not a rotation, or the number of distortion coefficients fits no lens model.
 void check_rig(const StereoRig& rig, const std::string& source);
 
+/// What `CalibrationFile::size_doubt` says of a principal point of a file without an image size.
+std::string principal_point_doubt(double cx_px, double cy_px, int width, int height);
+
 /// Checks the rig; returns it as `rectified` if it needs no rectification.
 CalibrationFile describe_rig(const StereoRig& rig, const std::string& format, const std::string& source);
 

@@ -37,7 +37,7 @@ std::string size_text(int width, int height) {
 void check_size(const StereoRig& rig, int width, int height) {
   if (rig.width != 0 && (rig.width != width || rig.height != height)) {
     fail("the calibration is for ", size_text(rig.width, rig.height), " pixels, but the images have ",
-         size_text(width, height));
+         size_text(width, height), ": scale the calibration, or record at ", size_text(rig.width, rig.height));
   }
 }
 
@@ -55,7 +55,9 @@ void check_arrangement(const StereoRig& rig) {
   if (std::abs(centre[2]) >= sideways) reject(centre[2] > 0 ? "in front of" : "behind", centre[2]);
   if (centre[0] <= 0) {
     fail("the right camera is ", -centre[0],
-         " m to the left of the left one; the cameras are swapped, or T has the wrong sign");
+         " m to the left of the left one; the cameras are swapped, or T has the wrong sign: exchange the two files, or "
+         "the "
+         "left and right images");
   }
 }
 
@@ -122,7 +124,10 @@ std::pair<PixelMap, PixelMap> inner_maps(const StereoRig& rig, cv::Size size, Re
       (*p)(0, 3) *= zoom;  // f·T
     }
   }
-  fail("the rig cannot be rectified: the optical axes diverge too much, or a distortion is out of range");
+  const std::string doubt =
+      rig.width == 0 ? principal_point_doubt(rig.left_matrix[2], rig.left_matrix[5], size.width, size.height) : "";
+  fail("the rig cannot be rectified: ",
+       doubt.empty() ? "the optical axes diverge too much, or a distortion is out of range" : doubt);
 }
 
 Frame resample(const Frame& frame, const PixelMap& map, int threads) {
@@ -168,7 +173,7 @@ Rectifier::Rectifier(const StereoRig& rig, int width, int height, int threads) :
   maps_->threads = threads;
   try {
     RectifiedCameras cameras = rectified_cameras(sized, maps_->size);
-    std::tie(maps_->left, maps_->right) = inner_maps(sized, maps_->size, cameras);
+    std::tie(maps_->left, maps_->right) = inner_maps(rig, maps_->size, cameras);
     maps_->calibration = calibration_of(cameras, maps_->size);
   } catch (const cv::Exception& error) {
     fail("the rig cannot be rectified: ", error.err);

@@ -53,6 +53,18 @@ TEST_F(InspectCommand, WritesEveryFile) {
   EXPECT_LE(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 24) << "more than one screen";
 }
 
+/// The calibration of pictures twice as large, in a format without a size.
+TEST_F(InspectCommand, ScaledPicturesAreSuspected) {
+  make_road();
+  write("K.txt", std::string("350 0 319.5 0 350 179.5 0 0 1\n0.12\n"));
+  const Outcome outcome = run("inspect road/left.png road/right.png --calibration K.txt --output scaled");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto codes = json_file("scaled/result.json")["warning_codes"];
+  EXPECT_NE(std::find(codes.begin(), codes.end(), "calibration-size"), codes.end()) << codes;
+  EXPECT_NE(outcome.out.find("K.txt: it has no image size"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("it suggests 640×360"), std::string::npos) << outcome.out;
+}
+
 TEST_F(InspectCommand, FindsTrueRoad) {
   make_road();
   ASSERT_EQ(inspect().exit_code, 0);

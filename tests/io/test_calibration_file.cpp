@@ -268,6 +268,28 @@ TEST_F(ReadCalibration, ReadsProjectionsOfOpenCvAlone) {
   expect_refused(text + whole.substr(whole.find("R: ")), "K1, D1, K2 and D2 are missing");  // of raw pictures
 }
 
+// Of a file without an image size the principal point tells whether the pictures were scaled since.
+TEST_F(ReadCalibration, PrincipalPointFarFromMiddleIsDoubted) {
+  const auto doubt = [&](const std::string& centre, int width, int height, const std::string& more = "") {
+    return read_calibration(write("focal_px: 700\nbaseline_m: 0.1\n" + centre + more)).size_doubt(width, height);
+  };
+  const std::string hd = "cx_px: 639.5\ncy_px: 359.5\n";
+  EXPECT_EQ(doubt(hd, 1280, 720), "");
+  EXPECT_EQ(doubt(hd, 1000, 562, "width: 1280\nheight: 720\n"), "") << "the file has a size, which is checked";
+  for (const auto& [width, height] : {std::pair(640, 360), std::pair(960, 540), std::pair(2560, 1440)}) {
+    const std::string text = doubt(hd, width, height);
+    EXPECT_NE(text.find("principal point (639.5, 359.5)"), std::string::npos) << width << ": " << text;
+    EXPECT_NE(text.find("it suggests 1280×720"), std::string::npos) << width << ": " << text;
+  }
+  // Rectified rigs: KITTI; Middlebury's Jadeplant and Recycle; a view that was cut off above.
+  EXPECT_EQ(doubt("cx_px: 609.56\ncy_px: 172.85\n", 1242, 375), "");
+  EXPECT_EQ(doubt("cx_px: 951.3\ncy_px: 970.1\n", 2632, 1988), "");
+  EXPECT_EQ(doubt("cx_px: 1135.5\ncy_px: 976.4\n", 2880, 1924), "");
+  EXPECT_EQ(doubt("cx_px: 639.5\ncy_px: 180\n", 1280, 540), "");
+  const CalibrationFile rig = read_calibration(write(opencv_file("K", "-0.12, 0., 0.")));  // with its size
+  EXPECT_EQ(rig.size_doubt(320, 240), "");
+}
+
 TEST_F(ReadCalibration, RejectsBadOpenCvStereo) {
   const std::string good = opencv_file("K", "-0.12, 0., 0.");
   expect_refused(opencv_file("K", "-60., 0., 0."), "the baseline is 60; it must be between 0.005 and 10 metres");

@@ -194,6 +194,24 @@ StereoRig rig_with_translation(double x, double y, double z) {
   return rig;
 }
 
+/// 640×360 with the principal point and the distortion of 1280×720.
+TEST(Rectification, TellsScaledImagesInsteadOfDistortion) {
+  StereoRig rig = rig_with_translation(-0.12, 0, 0);
+  rig.width = rig.height = 0;
+  for (std::array<double, 9>* matrix : {&rig.left_matrix, &rig.right_matrix}) {
+    *matrix = {850, 0, 639.5, 0, 850, 359.5, 0, 0, 1};
+  }
+  rig.left_distortion = rig.right_distortion = {-0.4, 0.2, 0, 0, 0};
+  EXPECT_NO_THROW(Rectifier(rig, 1280, 720));
+  rig.left_distortion = rig.right_distortion = {40, 0, 0, 0, 0};
+  try {
+    Rectifier(rig, 640, 360);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("it suggests 1280×720"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Rectification, RejectsBadRigs) {
   expect_refused(rig_with_translation(0.12, 0, 0), "to the left of the left one; the cameras are swapped");
   expect_refused(rig_with_translation(0, -0.12, 0), "below the left one");

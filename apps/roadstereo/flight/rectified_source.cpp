@@ -24,8 +24,18 @@ RectifiedSource::RectifiedSource(std::unique_ptr<io::FrameSource> source, const 
   if (!file_->rectified && !file_->rig && file_->rigs.empty())
     fail(file_name_, ": there is no stereo calibration in this file");
   if (file_->rig && file_->rig->width > 0) {
-    rectifier_.emplace(*file_->rig, file_->rig->width, file_->rig->height, threads_);
+    rectifier_.emplace(make_rectifier(file_->rig->width, file_->rig->height));
     calibration_ = rectifier_->calibration();
+  }
+}
+
+io::Rectifier RectifiedSource::make_rectifier(int width, int height) const {
+  try {
+    return io::Rectifier(*file_->rig, width, height, threads_);
+  } catch (const SystemError&) {
+    throw;
+  } catch (const Error& error) {
+    fail(file_name_, ": ", error.what());
   }
 }
 
@@ -34,12 +44,25 @@ void RectifiedSource::prepare(const io::SourcePair& first) {
   if (file_) {
     file_->select_size(first.left.width, first.left.height, file_name_);
     if (!calibration_) calibration_ = file_->rectified;
+    size_doubt_ = file_->size_doubt(first.left.width, first.left.height);
+    if (!size_doubt_.empty()) size_doubt_ = file_name_ + ": " + size_doubt_;
   }
   if (file_ && file_->rig && !rectifier_) {
-    rectifier_.emplace(*file_->rig, first.left.width, first.left.height, threads_);
+    rectifier_.emplace(make_rectifier(first.left.width, first.left.height));
     calibration_ = rectifier_->calibration();
   }
   prepared_ = true;
+  width_ = first.left.width;
+  height_ = first.left.height;
+}
+
+std::optional<StereoCalibration> RectifiedSource::sized_calibration() const {
+  std::optional<StereoCalibration> sized = calibration_;
+  if (sized && sized->width == 0) {
+    sized->width = width_;
+    sized->height = height_;
+  }
+  return sized;
 }
 
 /// White level that a pair needs; 0 where it is not to be found.

@@ -32,6 +32,10 @@ class RectifiedSource {
   /// Calibration of the rectified frames; absent without a calibration, and before the first pair if the file of an
   /// unrectified rig has no image size.
   const std::optional<StereoCalibration>& calibration() const { return calibration_; }
+  /// The same with the size of the pictures, once there was a pair.
+  std::optional<StereoCalibration> sized_calibration() const;
+  /// Why the calibration may be of another image size, naming its file; empty: it is not, or there was no pair yet.
+  const std::string& size_doubt() const { return size_doubt_; }
   const std::string& calibration_format() const { return format_; }  ///< empty without a calibration
 
   /// The white level that earlier pairs have needed.
@@ -41,6 +45,7 @@ class RectifiedSource {
 
  private:
   void prepare(const io::SourcePair& first);
+  io::Rectifier make_rectifier(int width, int height) const;
   double needed_white_level(const io::SourcePair& pair) const;
 
   std::unique_ptr<io::FrameSource> source_;
@@ -48,11 +53,13 @@ class RectifiedSource {
   std::optional<io::CalibrationFile> file_;
   std::string file_name_;
   std::string format_;
+  std::string size_doubt_;
   std::optional<StereoCalibration> calibration_;
   std::optional<io::Rectifier> rectifier_;
   double white_level_ = 0;
   bool finds_white_ = true;
   bool prepared_ = false;
+  int width_ = 0, height_ = 0;  ///< of the first pair
 };
 
 }  // namespace roadstereo::cli

@@ -34,6 +34,10 @@ struct CalibrationFile {
   /// Makes the member of `rigs` of that size the `rig`, or `rectified` if it needs no rectification; does nothing
   /// without `rigs`. Throws Error naming the sizes.
   void select_size(int width, int height, const std::string& source);
+
+  /// Says that the file has no image size and that its principal point lies far from the middle of images of that size,
+  /// as it does where they were scaled after the calibration; empty if not.
+  std::string size_doubt(int width, int height) const;
 };
 
 /// Reads a calibration; the format is recognised by content, not by name:
