@@ -16,6 +16,7 @@
 #include "json_text.hpp"
 #include "roadstereo/error.hpp"
 #include "roadstereo/io/calibration_file.hpp"
+#include "roadstereo/io/rectification.hpp"
 #include "roadstereo/resolution_limits.hpp"
 
 namespace roadstereo::cli {
@@ -38,6 +39,20 @@ struct LimitsArguments {
   std::string figure;
 };
 
+/// The rig of the pictures after rectification, as `inspect` rectifies them.
+StereoCalibration rectified(const io::StereoRig& rig, const LimitsArguments& arguments, const std::string& path) {
+  ImageSize size{rig.width, rig.height};
+  if (!arguments.size.empty()) size = parse_image_size("--size", arguments.size);
+  if (size.width < 1) fail(path, " has no image size; set it with --size WIDTHxHEIGHT");
+  try {
+    return io::Rectifier(rig, size.width, size.height).calibration();
+  } catch (const SystemError&) {
+    throw;
+  } catch (const Error& error) {
+    fail(path, ": ", error.what());
+  }
+}
+
 StereoCalibration read_file(const LimitsArguments& arguments) {
   const std::string& path = arguments.calibration.front();
   io::CalibrationFile file =
@@ -47,8 +62,7 @@ StereoCalibration read_file(const LimitsArguments& arguments) {
     const ImageSize size = parse_image_size("--size", arguments.size);
     file.select_size(size.width, size.height, path);
   }
-  if (!file.rectified) fail(path, ": the rig is not rectified; use the calibration of the rectified pair");
-  return *file.rectified;
+  return file.rectified ? *file.rectified : rectified(*file.rig, arguments, path);
 }
 
 /// The rig of the file, or of --focal-px and --baseline-m with the principal point in the middle of the image.
@@ -194,7 +208,8 @@ void add_limits(CLI::App& app) {
   command->footer(limits_footer);
   const auto arguments = std::make_shared<LimitsArguments>();
   auto* const rig = command->add_option_group("rig");
-  rig->add_option("--calibration", arguments->calibration, "Calibration of the rectified rig; repeat for a ROS pair")
+  rig->add_option("--calibration", arguments->calibration,
+                  "Calibration of the rig; of raw cameras it is rectified; repeat for a ROS pair")
       ->type_name("FILE")
       ->expected(1)
       ->allow_extra_args(false)

@@ -59,6 +59,24 @@ TEST_F(LimitsCommand, FocalLengthAndBaselineAreARig) {
   expect_complaint(run("--calibration K.txt --focal-px 500 --baseline-m 0.12 --size 640x360 --height 2"), "--focal-px");
 }
 
+/// Lenses that hardly distort: almost the rectified rig.
+TEST_F(LimitsCommand, RawCamerasAreRectified) {
+  const std::string k = ": [500, 0, 319.5, 0, 500, 179.5, 0, 0, 1]\n", d = ": [0.0001, 0, 0, 0, 0]\n";
+  const std::string raw =
+      "%YAML:1.0\n---\nK1" + k + "D1" + d + "K2" + k + "D2" + d + "R: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nT: [-0.12, 0, 0]\n";
+  write("raw.yml", raw + "image_width: 640\nimage_height: 360\n");
+  write("sizeless.yml", raw);
+  const auto depth = [&](const std::string& rig) {
+    const Outcome outcome = run("--calibration " + rig + " --height 2 --rows 3 --json");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out)["rows"][1]["resolvable_depth_mm"].get<double>();
+  };
+  const double expected = depth("rig.yaml");
+  EXPECT_NEAR(depth("raw.yml"), expected, 0.03 * expected);
+  EXPECT_NEAR(depth("sizeless.yml --size 640x360"), expected, 0.03 * expected);
+  expect_complaint(run("--calibration sizeless.yml --height 2"), "--size WIDTHxHEIGHT");
+}
+
 TEST_F(LimitsCommand, HostileCalibrationIsOneSentence) {
   const std::string begin = "%YAML:1.0\n---\n";
   write("deep.yaml", begin + "K1: " + std::string(40'000, '['));
