@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "core/degrees.hpp"
 #include "core/format_message.hpp"
@@ -21,6 +23,24 @@ double rounded(double value, double unit) {
   return std::round(value / unit) * unit;
 }
 
+/// "0.08 % larger, turned clockwise by 1.17° and 4.58 px higher", of the right view; without what rounds to nothing.
+std::string rows_text(const PairHealth& h) {
+  constexpr double unit = 0.01;
+  std::vector<std::string> parts;
+  const auto add = [&](const char* before, double value, const char* up, const char* down) {
+    const double size = rounded(std::abs(value), unit);
+    if (size > 0) parts.push_back(format_message(before, size, value > 0 ? up : down));
+  };
+  add("", 100 * h.row_scale, " % larger", " % smaller");
+  const char* const sense = h.row_turn_rad > 0 ? "turned clockwise by " : "turned counterclockwise by ";
+  add(sense, to_degrees(h.row_turn_rad), "°", "°");
+  add("", h.row_offset_px, " px lower", " px higher");
+  if (parts.empty()) return "";
+  std::string text = ": the right view is " + parts.front();
+  for (std::size_t i = 1; i < parts.size(); ++i) text += (i + 1 < parts.size() ? ", " : " and ") + parts[i];
+  return text;
+}
+
 class Findings {
  public:
   /// Adds a finding if the value, unless NaN, exceeds the limit.
@@ -39,9 +59,7 @@ void add_rectification(const PairHealth& h, Findings& findings) {
   const bool spoils_rows = h.row_error_px > max_trusted_row_error_px;
   findings.add_above("row-error", h.row_error_px, max_row_error_px, "px", spoils_rows,
                      "the rows of the pair differ by up to ", rounded(h.row_error_px, 0.01), " px (limit ",
-                     max_row_error_px, " px): the right view is ", rounded(100 * h.row_scale, 0.01),
-                     " % larger, turned by ", rounded(to_degrees(h.row_turn_rad), 0.01), "° and lies ",
-                     rounded(h.row_offset_px, 0.01), " px lower; recalibrate the rig");
+                     max_row_error_px, " px)", rows_text(h), "; rectify the pair, with a new calibration of the rig");
   constexpr double max_scatter_px = RowAlignment::max_fit_sigma_px;
   findings.add_above("row-scatter", h.row_scatter_px, max_scatter_px, "px", true, "the rows of the pair scatter by ",
                      rounded(h.row_scatter_px, 0.01), " px around those of a rigid rig (limit ", max_scatter_px,
@@ -51,7 +69,7 @@ void add_rectification(const PairHealth& h, Findings& findings) {
                      "residual lens distortion (k = ", rounded(h.distortion_right, 1e-4), " in the right view, ",
                      rounded(h.distortion_both, 1e-4), " in both): it bends the road by up to ",
                      rounded(h.bowl_px, 0.001), " px (limit ", rounded(h.noise_px, 0.001),
-                     " px, the noise of the road); recalibrate the rig");
+                     " px, the noise of the road); rectify the pair, with a new calibration of the rig");
 }
 
 void add_road(const PairHealth& h, Findings& findings) {

@@ -56,6 +56,28 @@ TEST(PairHealth, DistortionAsDeepAsDamageSpoilsDepth) {
   EXPECT_TRUE(health.findings().empty());
 }
 
+// Signs are words, and what rounds to nothing is not told.
+TEST(PairHealth, RowsAreToldWithoutSigns) {
+  PairHealth health;
+  health.row_error_px = 9.12;
+  health.row_scale = -0.0002;
+  health.row_turn_rad = -1e-6;
+  health.row_offset_px = -4.58;
+  EXPECT_EQ(only_finding(health).text,
+            "the rows of the pair differ by up to 9.12 px (limit 0.5 px): the right view is 0.02 % smaller and 4.58 px "
+            "higher; rectify the pair, with a new calibration of the rig");
+  health.row_scale = 0.0008;
+  health.row_turn_rad = 0.0204;  // 1.17°
+  health.row_offset_px = 0.001;
+  EXPECT_NE(only_finding(health).text.find(": the right view is 0.08 % larger and turned clockwise by 1.17°; rectify"),
+            std::string::npos);
+  health.row_offset_px = 3;
+  EXPECT_NE(only_finding(health).text.find("0.08 % larger, turned clockwise by 1.17° and 3 px lower"),
+            std::string::npos);
+  health.row_scale = health.row_turn_rad = health.row_offset_px = PairHealth::unknown;
+  EXPECT_NE(only_finding(health).text.find("(limit 0.5 px); rectify"), std::string::npos);
+}
+
 TEST(PairHealth, RowsAPixelApartSpoilDepth) {
   PairHealth health;
   health.row_error_px = 0.49;
