@@ -89,7 +89,7 @@ void run(const DamageArguments& arguments) {
   io::add_damage_files(folder, report);
   folder.commit();
   if (arguments.quiet) return;
-  fmt::print("{}: {}\n", arguments.files.transformed, damage_text(damage));
+  fmt::print("{}: {}\n", arguments.files.transformed, damage_text(damage, {}));
   if (!damage.metric) fmt::print("  no metric values: {}\n", damage.non_metric_reason);
   fmt::print("  report    {}\n  overlay   {}\n", (folder.path() / "report.html").string(),
              (folder.path() / "overlay.png").string());

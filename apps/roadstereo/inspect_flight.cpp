@@ -39,6 +39,12 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
   };
   text += fmt::format("  damage    {} in {}, {}\n", counted(summary.damages, "damage"),
                       counted(summary.sightings, "sighting"), counted(summary.candidates, "candidate"));
+  const io::InspectionLimits limits = summary.limits(run.calibration, run.options.damage);
+  if (summary.damages == 0 && !limits.doubts.empty()) {
+    text += fmt::format("            but the road was not inspected reliably: {}\n", limits.doubts.front());
+  } else if (summary.damages == 0 && !limits.limit.empty()) {
+    text += fmt::format("            the limit is {}\n", limits.limit);
+  }
   if (const std::string none = summary.no_road_text(); !none.empty()) text += "            " + none + "\n";
   for (const HealthFinding& finding : summary.health.findings()) {
     text += fmt::format("  health    {}: {}\n", finding.id, finding.text);
@@ -176,7 +182,7 @@ void inspect_flight(FlightSettings settings) {
   }
   run.source = source.source().description();
   run.calibration_format = source.calibration_format();
-  run.calibration = source.calibration();
+  run.calibration = source.sized_calibration();
   run.engine = resolve_engine_name(run.options.engine);
   run.threads = resolve_threads(run.options.threads);
 

@@ -110,6 +110,8 @@ void add_report(Inspection& inspection, io::OutputFolder& folder) {
   report.severity = inspection.options.damage.severity;
   report.properties = summary_properties(inspection);
   report.sheet = sheet_of(inspection);
+  report.warnings = inspection.warnings;
+  report.limits = limits_of(inspection);
   folder.add("report.html", io::damage_report(report));
 }
 

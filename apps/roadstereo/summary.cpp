@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/degrees.hpp"
+#include "inspection_limits.hpp"
 #include "roadstereo/version.hpp"
 
 namespace roadstereo::cli {
@@ -88,12 +89,33 @@ std::string picture_lines(const Inspection& inspection, const std::filesystem::p
 
 }  // namespace
 
-std::string damage_text(const DamageMap& map) {
+io::InspectionLimits limits_of(const Inspection& inspection) {
+  if (!inspection.damage.has_road()) return {};
+  const FrameResult& result = inspection.result;
+  RoadView view{result.geometry.plane, PairHealth::unknown, inspection.damage.noise_px, result.valid_share};
+  if (inspection.plane) view.height_m = inspection.plane->height_m;
+  const DamageOptions& options = inspection.options.damage;
+  const int width = result.disparity.width(), height = result.disparity.height();
+  std::optional<ResolvedDepth> depth;
+  if (std::optional<StereoCalibration> sized = inspection.pair.calibration) {
+    sized->width = width;
+    sized->height = height;
+    depth = resolved_depth(view, *sized, options);
+  }
+  return {doubts_of(inspection.health.findings(), view, width, height),
+          limit_text(depth, inspection.damage.noise_px, options)};
+}
+
+std::string damage_text(const DamageMap& map, const io::InspectionLimits& limits) {
   if (!map.has_road()) return "not inspected: " + map.non_metric_reason;
   const std::string candidates = map.candidates.empty() ? ""
                                                         : fmt::format("; {} candidate{}", map.candidates.size(),
                                                                       map.candidates.size() == 1 ? "" : "s");
-  if (map.damages.empty()) return "none found" + candidates;
+  if (map.damages.empty() && !limits.doubts.empty()) {
+    return "none found" + candidates + ", but the road was not inspected reliably: " + limits.doubts.front();
+  }
+  if (map.damages.empty())
+    return "none found" + candidates + (limits.limit.empty() ? "" : "; the limit is " + limits.limit);
   const auto depressions = std::count_if(map.damages.begin(), map.damages.end(),
                                          [](const Damage& one) { return one.kind == DamageKind::depression; });
   const auto protrusions = static_cast<std::ptrdiff_t>(map.damages.size()) - depressions;
@@ -139,7 +161,7 @@ std::string summary(const Inspection& inspection, const std::filesystem::path& f
   if (inspection.plane) text += line("camera", camera_text(*inspection.plane));
   text += line("valid", fmt::format("{:.1f} % of the pixels", 100 * result.valid_share));
   text += line("sigma_d", spread_text(result));
-  text += line("damage", damage_text(inspection.damage));
+  text += line("damage", damage_text(inspection.damage, limits_of(inspection)));
   text += line("time", time_text(result));
   for (const std::string& warning : inspection.warnings) text += line("warning", warning);
   return text + picture_lines(inspection, folder);

@@ -338,6 +338,31 @@ TEST(DamageReport, SaysThatNoDamageWasFound) {
   EXPECT_EQ(html.find("<canvas"), std::string::npos);
 }
 
+/// A road without damage is praised only where nothing casts doubt on it, and with the limit.
+TEST(DamageReport, PraisesOnlyWhatWasInspectedReliably) {
+  TrueDamage truth = damage_from_truth(road());
+  truth.map.damages.clear();
+  truth.map.ids.assign(480, 270, 0);
+  DamageReportInput input = report_input(truth);
+  input.limits.limit = "a depth of about 6 mm";
+  const std::string good = damage_report(input);
+  EXPECT_NE(good.find("notice good"), std::string::npos);
+  EXPECT_NE(good.find("The limit is a depth of about 6 mm."), std::string::npos);
+  input.warnings = {"blur: the pictures are <blurred>", "no code at all"};
+  const std::string flawed = damage_report(input);
+  EXPECT_EQ(flawed.find("notice good"), std::string::npos);
+  EXPECT_NE(flawed.find("<strong>Warning (blur):</strong> the pictures are &lt;blurred&gt;.</p>"), std::string::npos);
+  EXPECT_NE(flawed.find("<strong>Warning:</strong> no code at all.</p>"), std::string::npos);
+  EXPECT_LT(flawed.find("the pictures are"), flawed.find("Appendix: processing")) << "at the top";
+  input.warnings = {"row-error: the rows differ by 9 px"};
+  input.limits.doubts = {"the rows differ by 9 px"};
+  const std::string doubtful = damage_report(input);
+  EXPECT_EQ(doubtful.find("notice good"), std::string::npos);
+  EXPECT_NE(doubtful.find("not inspected reliably"), std::string::npos);
+  EXPECT_EQ(occurrences(doubtful, "the rows differ by 9 px"), 1U) << "once, as the reason";
+  EXPECT_EQ(doubtful.find("No part of the visible road"), std::string::npos);
+}
+
 TEST(DamageReport, UncalibratedIsInPixels) {
   const TrueDamage truth = damage_from_truth(road(), false);
   const std::string html = damage_report(report_input(truth));

@@ -187,6 +187,9 @@ std::string FlightResults::report(const FlightSettings& settings, const FlightRu
   report.notices = notices_of(run, summary_);
   report.curves = summary_.curves;
   report.inspected = summary_.inspected;
+  report.untrusted = summary_.untrusted;
+  report.flawed = !summary_.health.findings().empty();
+  report.limits = summary_.limits(run.calibration, run.options.damage);
   report.thumbnails = read_thumbnails(folder);
   report.map = run.map;
   report.damages = reported(damages, folder);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flight/flight_health.hpp"
+#include "inspection_limits.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
 #include "roadstereo/io/flight_report.hpp"
 #include "roadstereo/rig_bias.hpp"
@@ -21,6 +22,7 @@ struct FlightSummary {
   std::int64_t road_estimated = 0;         ///< frames whose road model was estimated, not tracked
   std::int64_t road_unknown = 0;           ///< good frames without a road model before matching
   std::int64_t inspected = 0;              ///< frames in which damage was searched for
+  std::int64_t untrusted = 0;              ///< of these, those whose depths cannot be trusted
   std::optional<std::int64_t> located;     ///< frames with a position; absent without a track
   std::int64_t located_by_trajectory = 0;  ///< of these, those placed by the trajectory instead of the track
   std::string no_position_reason;          ///< reason if no frame has a position
@@ -33,8 +35,10 @@ struct FlightSummary {
   double last_time_s = io::FlightFrame::unknown;
   io::StaticMaskRecord static_mask;  ///< of the last frame
   FlightHealth health;
-  RigBias rig_bias;         ///< of all frames; with --rig-bias what that leaves
-  io::FlightCurves curves;  ///< of every frame
+  RigBias rig_bias;               ///< of all frames; with --rig-bias what that leaves
+  io::FlightCurves curves;        ///< of every frame
+  std::vector<RoadView> views;    ///< of the inspected frames
+  std::vector<double> pitch_deg;  ///< of every frame; NaN: unknown
   std::vector<double> valid_share;
   std::vector<double> matching_ms;
   std::vector<double> damage_ms;
@@ -44,8 +48,13 @@ struct FlightSummary {
   /// Says in how many frames no road was found; empty if in none.
   std::string no_road_text() const;
 
+  /// What the frames tell of a road without damage.
+  io::InspectionLimits limits(const std::optional<StereoCalibration>& calibration, const DamageOptions& options) const;
+
   /// Number of frames that are not good and whose reason is not in `reasons`.
   std::int64_t further_reasons() const { return rejected + failed - static_cast<std::int64_t>(reasons.size()); }
+
+  void add_view(const io::FlightFrame& frame);
 
   /// Converts the times of the curves to seconds since the first frame if all are known, else to frame numbers.
   void settle_times();

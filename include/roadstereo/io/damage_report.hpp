@@ -13,6 +13,12 @@
 #pragma GCC visibility push(default)
 namespace roadstereo::io {
 
+/// What a road on which no damage was found can have all the same.
+struct InspectionLimits {
+  std::vector<std::string> doubts{};  ///< why the road was not inspected reliably; empty: it was
+  std::string limit{};                ///< the depth that is found, in words; empty: unknown
+};
+
 /// Input of `damage_report`. Maps and image have the size of `map`; empty ones are absent.
 struct DamageReportInput {
   const DamageMap& map;
@@ -26,6 +32,8 @@ struct DamageReportInput {
   std::vector<std::pair<std::string, std::string>> properties{};  ///< of the processing, for the appendix
   SeverityScheme severity = astm_d6433();                         ///< by which the damages were graded
   std::vector<std::uint8_t> sheet{};                              ///< the result sheet, PNG or JPEG
+  std::vector<std::string> warnings{};                            ///< of the pair, for the top of the report
+  InspectionLimits limits{};
 };
 
 /// Returns a self-contained HTML report: styles, scripts and images are embedded. Throws Error if the

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "roadstereo/io/damage_report.hpp"
 #include "roadstereo/io/flight_inventory.hpp"
 #include "roadstereo/io/road_segments.hpp"
 #include "roadstereo/map_inventory.hpp"
@@ -49,6 +50,7 @@ struct FlightReportInput {
   std::vector<std::string> notices;  ///< remarks at the top: rejected frames, an interrupted run
   FlightCurves curves;
   std::int64_t inspected = 0;                    ///< frames in which damage was searched for
+  std::int64_t untrusted = 0;                    ///< of these, those whose depths cannot be trusted
   std::vector<CaptionedPicture> thumbnails;      ///< in the order of the flight
   std::vector<ReportedDamage> damages;           ///< all, worst first
   std::vector<RoadDamage> candidates;            ///< all, worst first
@@ -57,6 +59,8 @@ struct FlightReportInput {
   std::optional<ReportedMap> map;          ///< with inspect --map
   SeverityScheme severity = astm_d6433();  ///< by which the damages were graded
   bool metric = false;                     ///< there is a calibration
+  bool flawed = false;                     ///< the notices tell of warnings of the rig
+  InspectionLimits limits{};               ///< of the frames
 };
 
 /// Returns a self-contained HTML report: styles, scripts and images are embedded.

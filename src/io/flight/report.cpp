@@ -41,10 +41,10 @@ std::string notices_of(const FlightReportInput& input) {
     html += "<p class=\"notice\"><strong>No damage found in single frames.</strong> Their map shows " +
             std::to_string(in_map) + ": see \"Damages on the map\".</p>";
   } else if (input.damages.empty()) {
-    const std::string where = input.inspected < frames ? " in " + std::to_string(input.inspected) + " of " +
-                                                             std::to_string(frames) + " frames"
-                                                       : "";
-    html += no_damage_notice(where, !input.candidates.empty());
+    const std::int64_t seen = input.inspected - (input.limits.doubts.empty() ? input.untrusted : 0);
+    const std::string where =
+        seen < frames ? " in " + std::to_string(seen) + " of " + std::to_string(frames) + " frames" : "";
+    html += no_damage_notice(where, !input.candidates.empty(), input.limits, input.flawed);
   }
   if (!input.metric) {
     html +=

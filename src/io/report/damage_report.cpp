@@ -102,7 +102,7 @@ std::string damage_report(const DamageReportInput& input) {
   fields["colours"] = severity_colours() + depth_colours();
   fields["version"] = version;
   fields["size"] = std::to_string(map.ids.width()) + " × " + std::to_string(map.ids.height()) + " px";
-  fields["notices"] = summary_notices(map);
+  fields["notices"] = summary_notices(input);
   fields["head"] = property_list(input.head);
   fields["cards"] = damages_cards(map.damages, map.damages.size(), map.candidates.size(), map.metric);
   fields["properties"] = property_list(input.properties);

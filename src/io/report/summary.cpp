@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <string_view>
 #include <vector>
 
 #include "io/damage_colours.hpp"
@@ -12,6 +13,7 @@
 #include "io/report/markup.hpp"
 #include "io/report/number_text.hpp"
 #include "io/report/templates.hpp"
+#include "roadstereo/warning.hpp"
 
 namespace roadstereo::io {
 namespace {
@@ -121,25 +123,58 @@ std::string damages_cards(const Damages& damages, std::size_t listed, std::size_
   return "<div class=\"cards\">" + cards + "</div>";
 }
 
-std::string no_damage_notice(const std::string& where, bool has_candidates) {
-  const char* const text = has_candidates ? "Regions that may be damage are listed as candidates."
-                                          : "No part of the visible road deviates from its surface by more than the "
-                                            "resolvable depth of this rig.";
-  return std::string("<p class=\"notice") + (has_candidates ? "" : " good") + "\"><strong>No damage found" + where +
-         ".</strong> " + text + "</p>";
+std::string no_damage_notice(const std::string& where, bool has_candidates, const InspectionLimits& limits,
+                             bool flawed) {
+  if (!limits.doubts.empty()) {
+    std::string reasons;
+    for (const std::string& doubt : limits.doubts) reasons += "<li>" + escaped(doubt) + ".</li>";
+    return "<div class=\"notice\"><strong>No damage found" + where +
+           ", but the road was not inspected reliably.</strong> There may be damage that was missed:<ul>" + reasons +
+           "</ul></div>";
+  }
+  std::string text = has_candidates ? "Regions that may be damage are listed as candidates."
+                                    : "No part of the visible road deviates from its surface by more than the "
+                                      "resolvable depth of this rig.";
+  if (!limits.limit.empty()) text += " The limit is " + limits.limit + ".";
+  const bool good = !has_candidates && !flawed;
+  return std::string("<p class=\"notice") + (good ? " good" : "") + "\"><strong>No damage found" + where +
+         ".</strong> " + escaped(text) + "</p>";
 }
 
-std::string summary_notices(const DamageMap& map) {
-  if (!map.has_road()) {
-    return "<p class=\"notice\"><strong>Not inspected.</strong> Damage could not be searched for: " +
-           escaped(map.non_metric_reason) + ".</p>";
-  }
+namespace {
+
+/// Whether the notice that no damage was found says the same.
+bool is_told(const std::string& warning, const InspectionLimits& limits) {
+  return std::any_of(limits.doubts.begin(), limits.doubts.end(),
+                     [&](const std::string& doubt) { return warning.find(doubt) != std::string::npos; });
+}
+
+std::string warning_notice(const std::string& warning) {
+  const std::string_view code = warning_code(warning);
+  const std::string text = code.empty() ? warning : warning.substr(code.size() + 2);
+  return "<p class=\"notice\"><strong>Warning" + (code.empty() ? "" : " (" + escaped(std::string(code)) + ")") +
+         ":</strong> " + escaped(text) + ".</p>";
+}
+
+}  // namespace
+
+std::string summary_notices(const DamageReportInput& input) {
+  const DamageMap& map = input.map;
   std::string notices;
-  if (map.damages.empty()) notices += no_damage_notice("", !map.candidates.empty());
-  if (!map.metric) {
-    const std::string why = map.non_metric_reason.empty() ? "the frame has no calibration" : map.non_metric_reason;
-    notices += "<p class=\"notice\"><strong>Pixels only.</strong> There are no metric values and no severities: " +
-               escaped(why) + ".</p>";
+  const bool tells_doubts = map.has_road() && map.damages.empty();
+  if (!map.has_road()) {
+    notices = "<p class=\"notice\"><strong>Not inspected.</strong> Damage could not be searched for: " +
+              escaped(map.non_metric_reason) + ".</p>";
+  } else {
+    if (tells_doubts) notices += no_damage_notice("", !map.candidates.empty(), input.limits, !input.warnings.empty());
+    if (!map.metric) {
+      const std::string why = map.non_metric_reason.empty() ? "the frame has no calibration" : map.non_metric_reason;
+      notices += "<p class=\"notice\"><strong>Pixels only.</strong> There are no metric values and no severities: " +
+                 escaped(why) + ".</p>";
+    }
+  }
+  for (const std::string& warning : input.warnings) {
+    if (!tells_doubts || !is_told(warning, input.limits)) notices += warning_notice(warning);
   }
   return notices;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "roadstereo/damage.hpp"
+#include "roadstereo/io/damage_report.hpp"
 
 namespace roadstereo::io {
 
@@ -12,11 +13,13 @@ namespace roadstereo::io {
 /// the first `listed` damages, which links may lead to.
 std::string damages_cards(const std::vector<Damage>& damages, std::size_t listed, std::size_t candidates, bool metric);
 
-/// Returns the notice that no damage was found, `where`: "", or " in …"; candidates are pointed to.
-std::string no_damage_notice(const std::string& where, bool has_candidates);
+/// Returns the notice that no damage was found, `where`: "", or " in …"; candidates are pointed to. It praises the road
+/// only where nothing of the pictures is `flawed`.
+std::string no_damage_notice(const std::string& where, bool has_candidates, const InspectionLimits& limits,
+                             bool flawed);
 
-/// Returns a notice if there is no damage or no metric result, else "".
-std::string summary_notices(const DamageMap& map);
+/// Returns the notices of a pair: whether there is damage, what is not metric, and the warnings.
+std::string summary_notices(const DamageReportInput& input);
 
 /// Returns names and values as an HTML list.
 std::string property_list(const std::vector<std::pair<std::string, std::string>>& properties);
