@@ -5,11 +5,11 @@
 #include <algorithm>
 
 #include "core/degrees.hpp"
-#include "core/order_statistics.hpp"
 #include "io/csv.hpp"
 #include "json_text.hpp"
 #include "map/day_layers.hpp"
 #include "map/map_values.hpp"
+#include "map/rut_profiles.hpp"
 #include "roadstereo/map_changes.hpp"
 #include "roadstereo/version.hpp"
 
@@ -58,17 +58,18 @@ std::string sightings_csv(const BuiltMap& built) {
   return text;
 }
 
-std::string transverse_csv(const BuiltMap& built, const std::vector<LaneProfiles>& lanes) {
+std::string transverse_csv(const BuiltMap& built, const MapResults& results) {
+  const std::vector<LaneProfiles>& lanes = results.lanes;
   std::string text =
       "path,station_m,x_m,y_m,width_m,rut_depth_m,rut_depth_stderr_m,rut_noise_floor_m,rut_resolvable,cross_slope,"
-      "cross_slope_stderr\r\n";
+      "cross_slope_stderr,in_damage\r\n";
   io::CsvLine line;
   for (std::size_t path = 0; path < lanes.size(); ++path) {
     for (const TransverseProfile& profile : lanes[path].transverse) {
       const std::array<double, 2> at = in_crs(built, profile.at_m);
       line.add(path).add(profile.station_m, 3).add(at[0], 3).add(at[1], 3).add(profile.width_m, 2);
       line.add(profile.rut_depth_m, 5).add(profile.rut_noise_floor_m, 5).add(profile.rut_resolvable ? 1 : 0);
-      text += line.add(profile.cross_slope, 5).end();
+      text += line.add(profile.cross_slope, 5).add(crosses_damage(profile, results.damages) ? 1 : 0).end();
     }
   }
   return text;
@@ -116,23 +117,6 @@ Json damage_json(const BuiltMap& built, const RoadDamageRecord& damage) {
           {"recordings", damage.passes},
           {"views", damage.views},
           {"found_in_map", damage.found_in_map}};
-}
-
-/// Median rut depth and floor of all transverse profiles, and how many are resolvable.
-std::string rut_text(const std::vector<LaneProfiles>& lanes) {
-  std::vector<double> ruts, floors;
-  std::size_t resolvable = 0;
-  for (const LaneProfiles& lane : lanes) {
-    for (const TransverseProfile& profile : lane.transverse) {
-      ruts.push_back(profile.rut_depth_m.value);
-      floors.push_back(profile.rut_noise_floor_m);
-      resolvable += profile.rut_resolvable ? 1 : 0;
-    }
-  }
-  if (ruts.empty()) return "  ruts      the mapped road is too narrow\n";
-  constexpr double mm = 1000;
-  return fmt::format("  ruts      {} profiles, median {:.1f} mm; noise alone makes {:.1f} mm; resolvable in {}\n",
-                     ruts.size(), mm * upper_median(ruts), mm * upper_median(floors), resolvable);
 }
 
 std::string roughness_text(const std::vector<LaneProfiles>& lanes) {
@@ -192,7 +176,7 @@ MapResults measure_map(const MapPlan& plan, const BuiltMap& built) {
 void add_map_tables(const BuiltMap& built, const MapResults& results, io::OutputFolder& folder) {
   folder.add("damages.csv", damages_csv(built, results));
   folder.add("sightings.csv", sightings_csv(built));
-  folder.add("transverse.csv", transverse_csv(built, results.lanes));
+  folder.add("transverse.csv", transverse_csv(built, results));
   folder.add("longitudinal.csv", longitudinal_csv(built, results.lanes));
   folder.add("roughness.csv", roughness_csv(results.lanes));
   if (built.days.size() > 1) {
@@ -248,7 +232,7 @@ std::string map_text(const MapPlan& plan, const BuiltMap& built, const MapResult
         damage.confidence);
   }
   text += changes_text(built, results.changes);
-  text += rut_text(results.lanes) + roughness_text(results.lanes);
+  text += rut_text(results.lanes, results.damages) + roughness_text(results.lanes);
   for (const std::string& reason : built.reasons) text += fmt::format("  no result {}\n", reason);
   return text + fmt::format("  output    {}\n", plan.output.string());
 }
