@@ -46,6 +46,7 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
     text += fmt::format("            the limit is {}\n", limits.limit);
   }
   if (const std::string none = summary.no_road_text(); !none.empty()) text += "            " + none + "\n";
+  for (const std::string& notice : run_notices(run, summary)) text += fmt::format("  notice    {}\n", notice);
   for (const HealthFinding& finding : summary.health.findings()) {
     text += fmt::format("  health    {}: {}\n", finding.id, finding.text);
   }
@@ -67,12 +68,14 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
 }
 
 /// Clouds and trajectories are metric. The calibration may be that of a bag.
-void require_calibration(const FlightPlan& plan, bool trajectory, const RectifiedSource& source) {
+void require_calibration(const FlightPlan& plan, const FlightSettings& settings, const RectifiedSource& source) {
   const bool cloud = std::find(plan.write.begin(), plan.write.end(), FrameFile::cloud) != plan.write.end();
   if (cloud && source.calibration_format().empty()) {
     fail("--write cloud needs --calibration");
   }
-  if (trajectory && source.calibration_format().empty()) fail("--trajectory needs --calibration");
+  if (settings.trajectory && source.calibration_format().empty()) {
+    fail(settings.map ? "--map" : "--trajectory", " needs --calibration");
+  }
 }
 
 /// Called before an earlier flight is removed.
@@ -145,7 +148,7 @@ void inspect_flight(FlightSettings settings) {
   RectifiedSource source(std::move(frames), settings.calibration, plan.options.threads);
   if (source.source().live()) fail(settings.source[0], ": cameras are not supported by inspect; use roadstereo live");
   if (!plan.find_white_level) source.ignore_white_level();
-  require_calibration(plan, settings.trajectory, source);
+  require_calibration(plan, settings, source);
   require_frames(settings, source.source());
   require_no_other_owner(settings.output, OutputOwner::recording);
   FlightFolder folder(settings.output);
@@ -179,7 +182,14 @@ void inspect_flight(FlightSettings settings) {
   if (trajectory) {
     run.crs = trajectory->crs();
     run.places = trajectory->places();
+    run.path = trajectory->summary();
+    run.track = trajectory->track_fit();
+    run.track_unused = trajectory->track_unused();
   }
+  if (!settings.calibration.empty()) run.calibration_file = settings.calibration.front();
+  run.size_doubt = source.size_doubt();
+  run.expected_height_m = settings.height_m;
+  run.expected_pitch_deg = settings.pitch_deg;
   run.source = source.source().description();
   run.calibration_format = source.calibration_format();
   run.calibration = source.sized_calibration();
@@ -196,7 +206,7 @@ void inspect_flight(FlightSettings settings) {
   if (settings.json) fmt::print("{}", json);
   if (!settings.json && !settings.quiet) {
     fmt::print("{}", flight_text(run, summary, folder));
-    if (trajectory) fmt::print("  path      {}\n", trajectory->summary());
+    if (trajectory) fmt::print("  path      {}\n", run.path);
     fmt::print("{}", map_text);
   }
   if (!run.complete) throw Interrupted{"interrupted; continue with --resume"};

@@ -361,6 +361,26 @@ TEST_F(FlightCommand, TellsInHowManyFramesThereIsNoRoad) {
   EXPECT_EQ(json_file("out/summary.json")["frames"]["inspected"], 1);
 }
 
+/// A height that is not that of the road is told for the whole recording; one that is, is not.
+TEST_F(FlightCommand, TellsThatHeightIsNotWhatWasExpected) {
+  write_list(3);
+  const std::string command = "inspect flight.txt --calibration rig.yaml --output out --height ";
+  const Outcome outcome = run(command + "30");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto summary = json_file("out/summary.json");
+  ASSERT_EQ(summary["notices"].size(), 1U);
+  const std::string notice = summary["notices"][0];
+  EXPECT_NE(notice.find("not 30 m as expected; check the unit of the baseline in rig.yaml"), std::string::npos)
+      << notice;
+  EXPECT_NE(outcome.out.find(notice), std::string::npos) << outcome.out;
+  EXPECT_NE(read_text(folder_ / "out/report.html").find(notice), std::string::npos);
+  EXPECT_GT(summary["health"]["frames_with"].value("unexpected-pose", 0), 0);
+  EXPECT_TRUE(summary["track"].is_null());
+  const double height_m = summary["height_m"]["median"];
+  ASSERT_EQ(run(command + std::to_string(height_m)).exit_code, 0);
+  EXPECT_TRUE(json_file("out/summary.json")["notices"].empty());
+}
+
 /// 12 bits in 16: two dark pairs that 10 bits would hold, then two bright ones.
 TEST_F(FlightCommand, WhiteLevelRisesWithPictures) {
   for (int i = 0; i < distinct_frames; ++i) {

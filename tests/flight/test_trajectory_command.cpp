@@ -189,6 +189,12 @@ TEST_F(TrackOfBend, PlacesTrajectoryOnTheEarthUnlessMirrored) {
   }
   EXPECT_EQ(read_text(folder_ / "out/loops.csv").rfind("from,to,used,", 0), 0U);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/.keyframes"));
+  const auto summary = nlohmann::json::parse(read_text(folder_ / "out/summary.json"));
+  EXPECT_EQ(summary["track"]["used"], true);
+  EXPECT_LT(summary["track"]["rms_m"], 0.05);
+  EXPECT_LT(std::abs(summary["track"]["time_offset_s"].get<double>()), 1) << "that of --track-offset is right";
+  EXPECT_NE(outcome.out.find(summary["path"].get<std::string>()), std::string::npos);
+  EXPECT_NE(read_text(folder_ / "out/report.html").find("track RMS"), std::string::npos);
 
   // With synchronised clocks the place is as exact as the fixes.
   ASSERT_EQ(
@@ -202,6 +208,9 @@ TEST_F(TrackOfBend, PlacesTrajectoryOnTheEarthUnlessMirrored) {
   expect_complaint(run("inspect flight --trajectory --track track.csv --track-offset 2.5 --output other --quiet"),
                    "only mirrored");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "other/trajectory_kitti.txt"));  // without the track
+  const auto other = nlohmann::json::parse(read_text(folder_ / "other/summary.json"));
+  EXPECT_EQ(other["track"]["used"], false);
+  EXPECT_NE(other["notices"].dump().find("does not use the track"), std::string::npos);
 }
 
 TEST_F(TrackOfBend, ReportHasPlacesOfMap) {

@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "finite_values.hpp"
+#include "roadstereo/warning.hpp"
 #include "series_health.hpp"
 
 namespace roadstereo::cli {
@@ -52,6 +54,10 @@ void FlightHealth::add(const io::FlightFrame& frame) {
   }
   of_frames_.push_back(frame.health);
   for (const HealthFinding& finding : frame.health.findings()) ++frames_with_[finding.id];
+  for (const std::string& warning : frame.warnings) {
+    const std::string_view code = warning_code(warning);
+    if (code == "unexpected-pose" || code == "road-anew") ++frames_with_[std::string(code)];
+  }
 }
 
 PairHealth FlightHealth::typical() const {

@@ -27,7 +27,7 @@ class FlightHealth {
   double lost_share() const;
   /// Findings of `typical`, vibration, lost pairs and what the trajectory tells.
   std::vector<HealthFinding> findings() const;
-  /// Number of frames with each finding, by id.
+  /// Number of frames with each finding, by id, and with each of the warnings unexpected-pose and road-anew.
   const std::map<std::string, std::int64_t>& frames_with() const { return frames_with_; }
 
  private:

@@ -84,6 +84,25 @@ Json flight_health_json(const FlightHealth& health) {
   return document;
 }
 
+/// How the trajectory uses the track; null without --trajectory and a track.
+Json track_json(const FlightRun& run) {
+  if (!run.track && run.track_unused.empty()) return nullptr;
+  Json track = {{"used", run.track.has_value()},
+                {"unused_reason", run.track_unused.empty() ? Json(nullptr) : Json(run.track_unused)}};
+  if (!run.track) return track;
+  const TrackFit& fit = *run.track;
+  track["rms_m"] = json_number(fit.rms_m);
+  track["clocks_checked"] = fit.time_offset_found;
+  track["time_offset_s"] = json_number(fit.time_offset_s.value);
+  track["time_offset_stderr_s"] = json_number(fit.time_offset_s.std_error);
+  track["lever_arm_m"] = track["lever_arm_stderr_m"] = Json::array();
+  for (const Measurement& axis : fit.lever_arm_m) {
+    track["lever_arm_m"].push_back(json_number(axis.value));
+    track["lever_arm_stderr_m"].push_back(json_number(axis.std_error));
+  }
+  return track;
+}
+
 Json rig_bias_json(const RigBias& bias) {
   const bool found = bias.order > 0;
   return {{"frames", bias.frames},
@@ -148,6 +167,9 @@ std::string flight_json(const FlightSettings& settings, const FlightRun& run, co
   document["health"] = flight_health_json(summary.health);
   document["rig_bias"] = rig_bias_json(summary.rig_bias);
   document["crs"] = run.crs.empty() ? Json(nullptr) : Json(run.crs);
+  document["path"] = run.path.empty() ? Json(nullptr) : Json(run.path);
+  document["track"] = track_json(run);
+  document["notices"] = run_notices(run, summary);
   document["run"] = run_json(run);
   return json_text(document);
 }

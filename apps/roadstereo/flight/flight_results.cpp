@@ -62,12 +62,63 @@ std::vector<std::pair<std::string, std::string>> properties_of(const FlightRun& 
     properties.emplace_back("Frames with position",
                             fmt::format("{} of {} frames{}", *summary.located, summary.frames,
                                         summary.located_by_trajectory > 0 ? ", by the trajectory" : ""));
+  if (!run.path.empty()) properties.emplace_back("Path", run.path);
   properties.emplace_back("Engine", fmt::format("{}, {} threads", run.engine, run.threads));
   return properties;
 }
 
+/// What contradicts --height or --pitch, with the tolerances of RigPrior; empty: nothing.
+std::string pose_text(const FlightRun& run, const FlightSummary& summary) {
+  constexpr double height_tolerance = 0.2, pitch_tolerance_deg = 5;
+  const auto known = [](std::vector<double> values) {
+    std::erase_if(values, [](double value) { return !std::isfinite(value); });
+    return median(std::move(values));
+  };
+  const double height_m = known(summary.curves.height_m), pitch_deg = known(summary.pitch_deg);
+  if (run.expected_height_m && std::abs(height_m / *run.expected_height_m - 1) > height_tolerance) {
+    return fmt::format(
+        "The camera is {:.2f} m (median) above the road, not {:g} m as expected; check the unit of the "
+        "baseline in {}, or --height",
+        height_m, *run.expected_height_m, run.calibration_file.empty() ? "the calibration" : run.calibration_file);
+  }
+  if (run.expected_pitch_deg && std::abs(pitch_deg - *run.expected_pitch_deg) > pitch_tolerance_deg) {
+    return fmt::format(
+        "The camera looks {:.1f}° (median) below the horizon of the road, not {:g}° as expected; check "
+        "--pitch, and the principal point of the calibration",
+        pitch_deg, *run.expected_pitch_deg);
+  }
+  return {};
+}
+
+/// What the track says of the clocks, where it is more than a second.
+std::string clock_text(const FlightRun& run) {
+  constexpr double max_offset_s = 1;
+  if (!run.track || !run.track->time_offset_found || std::abs(run.track->time_offset_s.value) <= max_offset_s)
+    return {};
+  return fmt::format(
+      "The clocks of camera and track differ: the times of the frames are corrected by {:+.3f} ± {:.3f} s, "
+      "in addition to --track-offset",
+      run.track->time_offset_s.value, run.track->time_offset_s.std_error);
+}
+
+}  // namespace
+
+std::vector<std::string> run_notices(const FlightRun& run, const FlightSummary& summary) {
+  std::vector<std::string> notices;
+  const std::string unused =
+      run.track_unused.empty() ? "" : "The trajectory does not use the track: " + run.track_unused;
+  const std::string doubt = run.size_doubt.empty() ? "" : "Calibration " + run.size_doubt;
+  for (const std::string& text : {doubt, pose_text(run, summary), clock_text(run), unused}) {
+    if (!text.empty()) notices.push_back(text);
+  }
+  return notices;
+}
+
+namespace {
+
 std::vector<std::string> notices_of(const FlightRun& run, const FlightSummary& summary) {
   std::vector<std::string> notices;
+  for (const std::string& notice : run_notices(run, summary)) notices.push_back(notice + ".");
   if (!run.complete) notices.emplace_back("The flight was interrupted; continue it with inspect --resume.");
   if (!summary.no_position_reason.empty())
     notices.push_back("No frame has a position: " + summary.no_position_reason + ".");
@@ -188,7 +239,7 @@ std::string FlightResults::report(const FlightSettings& settings, const FlightRu
   report.curves = summary_.curves;
   report.inspected = summary_.inspected;
   report.untrusted = summary_.untrusted;
-  report.flawed = !summary_.health.findings().empty();
+  report.flawed = !summary_.health.findings().empty() || !run_notices(run, summary_).empty();
   report.limits = summary_.limits(run.calibration, run.options.damage);
   report.thumbnails = read_thumbnails(folder);
   report.map = run.map;

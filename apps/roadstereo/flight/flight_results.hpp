@@ -13,6 +13,7 @@
 #include "roadstereo/io/flight_report.hpp"
 #include "roadstereo/io/pose_table.hpp"
 #include "roadstereo/pipeline.hpp"
+#include "roadstereo/pose_graph.hpp"
 #include "roadstereo/rig_bias.hpp"
 
 namespace roadstereo::cli {
@@ -32,8 +33,18 @@ struct FlightRun {
   std::string crs;                  ///< of the poses of the trajectory; empty: those of cameras
   std::vector<CameraPlace> places;  ///< FlightTrajectory::places
   std::optional<io::ReportedMap> map;
-  std::string no_map_reason;  ///< why --map made none
+  std::string no_map_reason;      ///< why --map made none
+  std::string path;               ///< FlightTrajectory::summary; empty without --trajectory
+  std::optional<TrackFit> track;  ///< of the trajectory
+  std::string track_unused;       ///< why that does not use the track
+  std::string calibration_file;   ///< the first one; empty without, or where the source carries it
+  std::string size_doubt;         ///< RectifiedSource::size_doubt
+  std::optional<double> expected_height_m, expected_pitch_deg;  ///< --height, --pitch
 };
+
+/// Sentences, without a full stop, on the calibration, --height and --pitch, and the clocks of the track, where they
+/// contradict what was seen.
+std::vector<std::string> run_notices(const FlightRun& run, const FlightSummary& summary);
 
 /// Collects the results of a flight frame by frame and writes its tables, report and GIS files.
 class FlightResults {

@@ -43,6 +43,11 @@ class FlightTrajectory {
   /// Where the cameras were on the Earth, in order; empty unless a track fits the trajectory.
   const std::vector<CameraPlace>& places() const { return places_; }
 
+  /// How track and trajectory fit; absent without a track, or if it is not used.
+  const std::optional<TrackFit>& track_fit() const { return graph_.track; }
+  /// Why the track is not used, a sentence; empty if it is, or without one.
+  const std::string& track_unused() const { return graph_.track_unused; }
+
   /// Why the track cannot be that of this flight, a sentence; empty without one, or if it can.
   std::string track_contradiction() const { return graph_.track_contradicts ? graph_.track_unused : std::string(); }
 
