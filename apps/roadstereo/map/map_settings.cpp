@@ -12,8 +12,11 @@ namespace {
 
 /// Options of recordings that runs have of their own.
 void reject_run_options(const MapSettings& settings) {
-  const auto reject = [](const char* option) {
-    fail(option, " is for recordings; outputs of inspect are mapped with the settings of their run");
+  const auto reject = [&](const char* option) {
+    fail(settings.source.front(),
+         " contains an output of inspect (summary.json), which is mapped with the settings of its "
+         "run; ",
+         option, " is for recordings: write outputs to a folder of their own");
   };
   if (!settings.calibration.empty()) reject("--calibration");
   if (!settings.processing.settings.empty()) reject("--set");
@@ -118,7 +121,8 @@ MapPlan MapSettings::plan() const {
   const auto runs = static_cast<std::size_t>(std::count_if(
       source.begin(), source.end(), [](const std::string& name) { return owner_of(name) == OutputOwner::recording; }));
   if (runs != 0 && runs != source.size()) {
-    fail("map takes either recordings or outputs of inspect, not both: ", runs, " of ", source.size(), " are outputs");
+    fail("map takes either recordings or outputs of inspect, not both: ", runs, " of ", source.size(),
+         " contain an output (summary.json)");
   }
   plan.passes = runs > 0 ? runs_of(*this) : recordings_of(*this);
   if (runs > 0 && trajectory.empty() && crs.empty()) plan.crs = common_crs(source, plan.passes);

@@ -100,7 +100,9 @@ MapPass read_run(const fs::path& folder) {
   pass.trajectory = (folder / trajectory_file_names().front()).string();
   std::error_code absent;
   if (!fs::exists(pass.trajectory, absent)) {
-    fail(folder.string(), ": this run has no trajectory; add it with inspect --trajectory --resume");
+    fail(folder.string(),
+         " contains an output of inspect (summary.json), but this run has no trajectory; add it with "
+         "inspect --trajectory --resume");
   }
   return pass;
 }
