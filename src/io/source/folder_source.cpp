@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <filesystem>
 #include <unordered_set>
 
@@ -122,6 +123,52 @@ std::optional<fs::path> times_file(const fs::path& folder, const fs::path& left)
   return std::nullopt;
 }
 
+std::optional<std::size_t> frame_number(const ImagePair& pair) {
+  std::size_t number = 0;
+  const char* const end = pair.name.data() + pair.name.size();
+  const auto [read_to, error] = std::from_chars(pair.name.data(), end, number);
+  if (error != std::errc{} || read_to != end) return std::nullopt;
+  return number;
+}
+
+/// Number of the first time: 0 or 1, if the images are numbered from there to that of the last time; else nullopt.
+std::optional<std::size_t> first_number(const std::vector<ImagePair>& pairs, std::size_t times) {
+  std::size_t smallest = times + 1, largest = 0;
+  for (const ImagePair& pair : pairs) {
+    const auto number = frame_number(pair);
+    if (!number) return std::nullopt;
+    smallest = std::min(smallest, *number);
+    largest = std::max(largest, *number);
+  }
+  if (smallest > 1 || largest + 1 - smallest != times) return std::nullopt;
+  return smallest;
+}
+
+/// The first number that has no left image: ", none has the number 3".
+std::string gap_text(const std::vector<ImagePair>& pairs) {
+  std::optional<std::size_t> last;
+  for (const ImagePair& pair : pairs) {
+    const auto number = frame_number(pair);
+    if (!number) return "";
+    if (pair.left.empty()) return "; that of " + pair.name + " is missing";
+    if (last && *number > *last + 1) return "; none has the number " + std::to_string(*last + 1);
+    last = number;
+  }
+  return "";
+}
+
+/// Assigns the times by number, where images are missing. Throws Error naming the gap if the names have none.
+void set_times_by_number(std::vector<ImagePair>& pairs, const std::vector<double>& times, const fs::path& file,
+                         std::size_t left_images) {
+  const bool all = pairs.size() == times.size();  // every missing left image has a right one
+  const auto first = first_number(pairs, times.size());
+  if (!all && !first) {
+    fail(file.string(), " has ", times.size(), " times, but there are ", left_images, " left images", gap_text(pairs),
+         "; delete the lines of missing images, or give --rate instead");
+  }
+  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].time_s = times[all ? i : *frame_number(pairs[i]) - *first];
+}
+
 /// Assigns the times to the left images in order. A pair without a left image has none; one without a time is
 /// unfinished.
 void set_times(std::vector<ImagePair>& pairs, const std::vector<double>& times) {
@@ -142,7 +189,13 @@ void add_times(std::vector<ImagePair>& pairs, std::size_t left_images, const std
     double index = 0;
     for (ImagePair& pair : pairs) pair.time_s = index++ / options.rate_hz;
   } else if (file) {
-    set_times(pairs, read_times(*file, left_images));
+    const std::vector<double> times = read_times(*file);
+    const bool fits = times.size() <= left_images && 2 * times.size() >= left_images;  // or the recording was killed
+    if (fits) {
+      set_times(pairs, times);
+    } else {
+      set_times_by_number(pairs, times, *file, left_images);
+    }
   }
 }
 
@@ -170,6 +223,31 @@ std::unique_ptr<FrameSource> folder_pair(const fs::path& folder, const fs::path&
       folder);
 }
 
+/// The folder of that name, else one that differs in case only ("Left"); nullopt without.
+std::optional<fs::path> sub_folder(const fs::path& folder, const std::string& name) {
+  if (fs::is_directory(folder / name)) return folder / name;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (lower_case(entry->path().filename().string()) == name && entry->is_directory()) return entry->path();
+  }
+  return std::nullopt;
+}
+
+/// "there is left/ but no right/", or why the images are no pairs.
+std::string no_pairs_reason(const fs::path& folder, std::size_t images) {
+  for (const SubFolders& layout : layouts) {
+    const bool left = sub_folder(folder, layout.left).has_value(), right = sub_folder(folder, layout.right).has_value();
+    if (left == right) continue;
+    const auto [there, lacking] = left ? std::pair(layout.left, layout.right) : std::pair(layout.right, layout.left);
+    return std::string("there is ") + there + "/ but no " + lacking + "/";
+  }
+  if (images == 0) return "there are no stereo pairs in this folder";
+  return "the names of the " + std::to_string(images) +
+         " images in this folder do not tell left from right; images with both views side by side must be cut apart, "
+         "or "
+         "made a video and read with --layout";
+}
+
 std::unique_ptr<FrameSource> one_folder(const fs::path& folder, const SourceOptions& options) {
   const std::vector<ViewFile> images = images_in(folder);
   for (const SideNames& names : side_names) {
@@ -181,8 +259,9 @@ std::unique_ptr<FrameSource> one_folder(const fs::path& folder, const SourceOpti
     add_times(pairs, left_images, times_file(folder, folder), options);
     return std::make_unique<ImagePairs>(std::move(pairs), "folder", folder);
   }
-  fail(folder.string(), ": there are no stereo pairs in this folder; it must contain left/ right/, image_2/ image_3/, ",
-       "image_0/ image_1/ or cam0/data cam1/data, or images named L… and R…");
+  fail(folder.string(), ": ", no_pairs_reason(folder, images.size()),
+       "; a folder must contain left/ right/, image_2/ image_3/, image_0/ image_1/ or cam0/data cam1/data, or images "
+       "named L… and R…");
 }
 
 }  // namespace
@@ -190,9 +269,8 @@ std::unique_ptr<FrameSource> one_folder(const fs::path& folder, const SourceOpti
 std::unique_ptr<FrameSource> open_folder(const std::string& folder, const SourceOptions& options) {
   const fs::path path(folder);
   for (const SubFolders& layout : layouts) {
-    if (fs::is_directory(path / layout.left) && fs::is_directory(path / layout.right)) {
-      return folder_pair(path, path / layout.left, path / layout.right, options);
-    }
+    const auto left = sub_folder(path, layout.left), right = sub_folder(path, layout.right);
+    if (left && right) return folder_pair(path, *left, *right, options);
   }
   return one_folder(path, options);
 }

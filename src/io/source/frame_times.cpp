@@ -58,7 +58,7 @@ void require_seconds(const std::string& where, const std::string& text, double t
   if (time_s > latest_unix_s) fail(where, ": ", text, " is after the year 2100; times are seconds, not nanoseconds");
 }
 
-std::vector<double> read_times(const std::filesystem::path& file, std::size_t count) {
+std::vector<double> read_times(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) fail(file.string(), ": cannot be read");
   std::vector<double> times;
@@ -80,8 +80,16 @@ std::vector<double> read_times(const std::filesystem::path& file, std::size_t co
   // After a power cut the last line may be torn: its time lies before the one above.
   const bool is_torn = !text_ends_line && times.size() > 1 && times.back() < times[times.size() - 2];
   if (is_torn) times.pop_back();
-  if (times.size() > count || 2 * times.size() < count) {
-    fail(file.string(), " has ", times.size(), " times, but there are ", count, " left images");
+  // One time that cannot be costs its pair only.
+  std::size_t steps_back = 0, last = 0;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (times[i] >= times[i - 1]) continue;
+    ++steps_back;
+    last = i;
+  }
+  if (steps_back > 1) {
+    fail(file.string(), ": the times must not run backwards, but ", steps_back, " lie before the one above, time ",
+         last + 1, " for example");
   }
   return times;
 }

@@ -15,8 +15,7 @@ std::optional<double> time_of_name(const std::string& stem);
 void require_seconds(const std::string& where, const std::string& text, double time_s);
 
 /// Reads one time per line: seconds, or date and time of day (UTC, KITTI's timestamps.txt). Throws Error naming file
-/// and line if one is neither, or if there are more than `count`, or fewer than half of it: a recording that was killed
-/// has fewer times than pairs.
-std::vector<double> read_times(const std::filesystem::path& file, std::size_t count);
+/// and line if one is neither, or if more than one lies before the one above.
+std::vector<double> read_times(const std::filesystem::path& file);
 
 }  // namespace roadstereo::io

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string_view>
+#include <utility>
 
 #include "io/source/frame_times.hpp"
 #include "io/source/image_pairs.hpp"
@@ -42,7 +43,8 @@ bool is_heading(const std::vector<std::string>& words) {
 
 ImagePair pair_of(const std::vector<std::string>& words, const std::string& where, const fs::path& folder) {
   if (words.size() < 2 || words.size() > 3 || words[0].empty() || words[1].empty()) {
-    fail(where, ": \"left right [seconds]\" is expected, but the line has ", words.size(), " words");
+    fail(where, ": \"left right [seconds]\" is expected, but the line has ", words.size(),
+         words.size() > 3 ? " words; put names with blanks in quotes, or separate by commas" : " words");
   }
   ImagePair pair;
   pair.left = (folder / words[0]).string();
@@ -70,7 +72,12 @@ std::unique_ptr<FrameSource> open_list(const std::string& file, const SourceOpti
     if (number == 1 && line.rfind(byte_order_mark, 0) == 0) line.erase(0, byte_order_mark.size());
     const std::vector<std::string> words = words_of(line);
     if (words.empty() || words[0].empty() || words[0][0] == '#' || (pairs.empty() && is_heading(words))) continue;
-    pairs.push_back(pair_of(words, file + ", line " + std::to_string(number), fs::path(file).parent_path()));
+    const std::string where = file + ", line " + std::to_string(number);
+    ImagePair pair = pair_of(words, where, fs::path(file).parent_path());
+    if (!pairs.empty() && pair.time_s < pairs.back().time_s) {
+      fail(where, ": the time ", words[2], " lies before that of the pair above; times must not run backwards");
+    }
+    pairs.push_back(std::move(pair));
   }
   if (pairs.empty()) fail(file, ": the list has no pairs; a line must be \"left right [seconds]\"");
   if (options.rate_hz > 0) {

@@ -353,6 +353,48 @@ TEST_F(FolderSource, PairsAfterLastWrittenTimeAreRejected) {
   }
 }
 
+/// Times of all frames, and a picture that was deleted: numbers, or the other picture of the pair, tell which time.
+TEST_F(FolderSource, MissingImageKeepsTimesOfOthers) {
+  for (const char* number : {"000000", "000001", "000003"}) image(std::string("left/") + number + ".png", 1);
+  for (const char* number : {"000000", "000001", "000003"}) image(std::string("right/") + number + ".png", 1);
+  text("times.txt", "5\n6\n7\n8\n");
+  const std::vector<SourcePair> gap = all();
+  ASSERT_EQ(gap.size(), 3U);
+  EXPECT_EQ(gap[1].time_s, 6);
+  EXPECT_EQ(gap[2].time_s, 8);
+  image("right/000002.png", 1);
+  const std::vector<SourcePair> half = all();
+  ASSERT_EQ(half.size(), 4U);
+  EXPECT_NE(half[2].error, "");
+  EXPECT_EQ(half[3].time_s, 8);
+  text("times.txt", "5\n6\n7\n8\n9\n");  // of a frame before the first, or after the last?
+  const std::string message = complaint(".");
+  EXPECT_NE(message.find("has 5 times, but there are 3 left images; that of 000002 is missing; delete the lines"),
+            std::string::npos)
+      << message;
+}
+
+TEST_F(FolderSource, TimesDoNotRunBackwards) {
+  for (const char* name : {"left/1.png", "right/1.png", "left/2.png", "right/2.png", "left/3.png", "right/3.png"}) {
+    image(name, 1);
+  }
+  text("times.txt", "3\n2\n1\n");
+  EXPECT_NE(complaint(".").find("2 lie before the one above, time 3 for example"), std::string::npos) << complaint(".");
+  text("list.txt", "left/1.png right/1.png 7\nleft/2.png right/2.png 6\n");
+  EXPECT_NE(complaint("list.txt").find("line 2: the time 6 lies before"), std::string::npos) << complaint("list.txt");
+}
+
+TEST_F(FolderSource, NamesOfFoldersMayBeUpperCase) {
+  for (const char* name : {"a/Left/1.png", "a/RIGHT/1.png", "b/left/1.png", "c/view1.png", "c/view2.png"})
+    image(name, 1);
+  EXPECT_EQ(all("a").size(), 1U);
+  EXPECT_NE(complaint("b").find("there is left/ but no right/"), std::string::npos) << complaint("b");
+  EXPECT_NE(complaint("c").find("2 images in this folder do not tell left from right"), std::string::npos)
+      << complaint("c");
+  text("list.txt", "a b/1.png c d/1.png\n");
+  EXPECT_NE(complaint("list.txt").find("4 words; put names with blanks in quotes"), std::string::npos);
+}
+
 TEST_F(FolderSource, RejectsOtherNumberOfTimes) {
   image("left/1.png", 1);
   image("right/1.png", 1);
@@ -375,10 +417,10 @@ TEST(FrameTimes, ParsesNamesAndDates) {
   EXPECT_FALSE(time_of_name("000012"));
   EXPECT_FALSE(time_of_name("frame"));
   const fs::path file = fs::temp_directory_path() / ("roadstereo_times" + std::to_string(getpid()));
-  std::ofstream(file) << "2011-09-26 13:02:25.964389445\n1970-01-02T00:00:00Z\n";
-  const std::vector<double> times = read_times(file, 2);
-  EXPECT_NEAR(times[0], 1317042145.964389445, 1e-6);
-  EXPECT_EQ(times[1], 86400);
+  std::ofstream(file) << "1970-01-02T00:00:00Z\n2011-09-26 13:02:25.964389445\n";
+  const std::vector<double> times = read_times(file);
+  EXPECT_EQ(times[0], 86400);
+  EXPECT_NEAR(times[1], 1317042145.964389445, 1e-6);
   fs::remove(file);
 }
 
