@@ -10,8 +10,6 @@
 namespace roadstereo::cli {
 namespace {
 
-constexpr double mm = 1000;  // in a metre
-
 /// The first row, 0 … height, below which the plane has positive disparities in this column.
 double horizon_row(const DisparityPlane& plane, double u, int height) {
   const double at_top = plane.disparity(u, 0), at_bottom = plane.disparity(u, height);
@@ -67,7 +65,7 @@ std::string limit_text(const std::optional<ResolvedDepth>& depth, double noise_p
     return fmt::format(
         "a depth or height of about {:.0f} mm at {:.2f} m from the camera, the middle of the road in view, "
         "and more beyond",
-        std::ceil(mm * depth->depth_m), depth->distance_m);
+        std::ceil(1000 * depth->depth_m), depth->distance_m);
   }
   if (!std::isfinite(noise_px)) return {};
   return fmt::format("a change of the disparity by {:.2f} px", resolvable_change_px(noise_px, options.threshold_sigma));

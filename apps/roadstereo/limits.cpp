@@ -40,7 +40,8 @@ struct LimitsArguments {
 };
 
 /// The rig of the pictures after rectification, as `inspect` rectifies them.
-StereoCalibration rectified(const io::StereoRig& rig, const LimitsArguments& arguments, const std::string& path) {
+StereoCalibration rectified_calibration(const io::StereoRig& rig, const LimitsArguments& arguments,
+                                        const std::string& path) {
   ImageSize size{rig.width, rig.height};
   if (!arguments.size.empty()) size = parse_image_size("--size", arguments.size);
   if (size.width < 1) fail(path, " has no image size; set it with --size WIDTHxHEIGHT");
@@ -62,7 +63,7 @@ StereoCalibration read_file(const LimitsArguments& arguments) {
     const ImageSize size = parse_image_size("--size", arguments.size);
     file.select_size(size.width, size.height, path);
   }
-  return file.rectified ? *file.rectified : rectified(*file.rig, arguments, path);
+  return file.rectified ? *file.rectified : rectified_calibration(*file.rig, arguments, path);
 }
 
 /// The rig of the file, or of --focal-px and --baseline-m with the principal point in the middle of the image.

@@ -74,21 +74,21 @@ std::vector<double> values_of(const Storage& storage, const std::string& key, co
 }
 
 /// A figure and its names in the files of calibration programs, the usual one first.
-struct Name {
+struct KeyNames {
   std::vector<const char*> keys;
 };
-const Name k1{{"K1", "M1", "cameraMatrix1", "left_camera_matrix"}};
-const Name k2{{"K2", "M2", "cameraMatrix2", "right_camera_matrix"}};
-const Name d1{{"D1", "distCoeffs1", "left_distortion"}}, d2{{"D2", "distCoeffs2", "right_distortion"}};
-const Name rotation{{"R", "rotation"}}, translation{{"T", "translation"}};
+const KeyNames k1_names{{"K1", "M1", "cameraMatrix1", "left_camera_matrix"}};
+const KeyNames k2_names{{"K2", "M2", "cameraMatrix2", "right_camera_matrix"}};
+const KeyNames d1_names{{"D1", "distCoeffs1", "left_distortion"}}, d2_names{{"D2", "distCoeffs2", "right_distortion"}};
+const KeyNames rotation_names{{"R", "rotation"}}, translation_names{{"T", "translation"}};
 
-bool has(const Storage& storage, const Name& name) {
+bool has_key(const Storage& storage, const KeyNames& name) {
   std::string key;
   return storage.find(name.keys, key) != nullptr;
 }
 
 template <std::size_t Count>
-std::array<double, Count> read_matrix(const Storage& storage, const Name& name) {
+std::array<double, Count> read_matrix(const Storage& storage, const KeyNames& name) {
   std::string key;
   const OpenCvEntry* entry = storage.find(name.keys, key);
   const std::vector<double> values = values_of(storage, key, *entry);
@@ -100,14 +100,14 @@ std::array<double, Count> read_matrix(const Storage& storage, const Name& name) 
   return matrix;
 }
 
-std::vector<double> read_distortion(const Storage& storage, const Name& name) {
+std::vector<double> read_distortion(const Storage& storage, const KeyNames& name) {
   std::string key;
   const OpenCvEntry* entry = storage.find(name.keys, key);
   return entry == nullptr ? std::vector<double>{} : values_of(storage, key, *entry);
 }
 
 /// "R and T", or "K1, D1 and K2".
-std::string list_text(const std::vector<std::string>& words) {
+std::string missing_text(const std::vector<std::string>& words) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {
     text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
@@ -117,22 +117,22 @@ std::string list_text(const std::vector<std::string>& words) {
 
 /// Throws Error naming all that is missing. A rectified pair has no distortion; one of a lens must not get lost because
 /// it has another name.
-void require_all(const Storage& storage) {
+void require_opencv_keys(const Storage& storage) {
   std::vector<std::string> missing;
-  const bool left = has(storage, d1), right = has(storage, d2);
+  const bool left = has_key(storage, d1_names), right = has_key(storage, d2_names);
   const std::string other = left || right ? "" : storage.first_key_with("dist");
-  const bool matrices = has(storage, k1) && has(storage, k2),
-             poses = has(storage, rotation) && has(storage, translation);
+  const bool matrices = has_key(storage, k1_names) && has_key(storage, k2_names),
+             poses = has_key(storage, rotation_names) && has_key(storage, translation_names);
   const bool needs_distortion = left != right || !other.empty() || !matrices;
-  const auto require = [&](const Name& name) {
-    if (!has(storage, name)) missing.emplace_back(name.keys.front());
+  const auto require = [&](const KeyNames& name) {
+    if (!has_key(storage, name)) missing.emplace_back(name.keys.front());
   };
-  require(k1);
-  if (needs_distortion) require(d1);
-  require(k2);
-  if (needs_distortion) require(d2);
-  require(rotation);
-  require(translation);
+  require(k1_names);
+  if (needs_distortion) require(d1_names);
+  require(k2_names);
+  if (needs_distortion) require(d2_names);
+  require(rotation_names);
+  require(translation_names);
   if (missing.empty()) return;
   std::string hint;
   if (!other.empty()) hint += "; there is a key " + other;
@@ -142,15 +142,16 @@ void require_all(const Storage& storage) {
   }
   if (!matrices) hint += "; other names are M1 or cameraMatrix1, and distCoeffs1";
   if (matrices && left != right) hint += "; a lens without distortion has 0 0 0 0 0";
-  fail(storage.path(), ": ", list_text(missing), missing.size() > 1 ? " are missing" : " is missing", hint);
+  fail(storage.path(), ": ", missing_text(missing), missing.size() > 1 ? " are missing" : " is missing", hint);
 }
 
 /// Whether the file has nothing but the projection matrices of a rectified pair.
-bool is_rectified(const Storage& storage) {
-  const auto any = [&](std::initializer_list<const Name*> names) {
-    return std::any_of(names.begin(), names.end(), [&](const Name* name) { return has(storage, *name); });
+bool has_projections_only(const Storage& storage) {
+  const auto any = [&](std::initializer_list<const KeyNames*> names) {
+    return std::any_of(names.begin(), names.end(), [&](const KeyNames* name) { return has_key(storage, *name); });
   };
-  return has(storage, {{"P1"}}) && has(storage, {{"P2"}}) && !any({&k1, &k2, &d1, &d2, &rotation, &translation});
+  return has_key(storage, {{"P1"}}) && has_key(storage, {{"P2"}}) &&
+         !any({&k1_names, &k2_names, &d1_names, &d2_names, &rotation_names, &translation_names});
 }
 
 int read_side(const Storage& storage, const std::vector<const char*>& keys, std::size_t index) {
@@ -194,14 +195,14 @@ int read_height(const Storage& storage) {
 }
 
 StereoRig read_rig(const Storage& storage) {
-  require_all(storage);
+  require_opencv_keys(storage);
   StereoRig rig;
-  rig.left_matrix = read_matrix<9>(storage, k1);
-  rig.right_matrix = read_matrix<9>(storage, k2);
-  rig.left_distortion = read_distortion(storage, d1);
-  rig.right_distortion = read_distortion(storage, d2);
-  rig.rotation = read_matrix<9>(storage, rotation);
-  rig.translation_m = read_matrix<3>(storage, translation);
+  rig.left_matrix = read_matrix<9>(storage, k1_names);
+  rig.right_matrix = read_matrix<9>(storage, k2_names);
+  rig.left_distortion = read_distortion(storage, d1_names);
+  rig.right_distortion = read_distortion(storage, d2_names);
+  rig.rotation = read_matrix<9>(storage, rotation_names);
+  rig.translation_m = read_matrix<3>(storage, translation_names);
   rig.fisheye = read_fisheye(storage);
   rig.width = read_width(storage);
   rig.height = read_height(storage);
@@ -209,7 +210,7 @@ StereoRig read_rig(const Storage& storage) {
 }
 
 /// P1 and P2 of `stereoRectify`: P2[3] is −focal length × baseline.
-CalibrationFile read_rectified(const Storage& storage) {
+CalibrationFile read_projections(const Storage& storage) {
   const std::array<double, 12> left = read_matrix<12>(storage, {{"P1"}}), right = read_matrix<12>(storage, {{"P2"}});
   StereoCalibration calibration;
   calibration.focal_px = left[0];
@@ -229,7 +230,7 @@ CalibrationFile read_rectified(const Storage& storage) {
 
 CalibrationFile read_opencv_stereo(const CalibrationText& file, const CalibrationText* second) {
   const Storage storage(file, second);
-  if (is_rectified(storage)) return read_rectified(storage);
+  if (has_projections_only(storage)) return read_projections(storage);
   return describe_rig(read_rig(storage), "OpenCV stereo", storage.path());
 }
 

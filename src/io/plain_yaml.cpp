@@ -4,7 +4,7 @@
 namespace roadstereo::io {
 namespace {
 
-void require_all(const CalibrationText& file, const YAML::Node& root) {
+void require_plain_keys(const CalibrationText& file, const YAML::Node& root) {
   std::string missing;
   std::size_t count = 0;
   for (const char* key : {"focal_px", "cx_px", "cy_px", "baseline_m"}) {
@@ -22,7 +22,7 @@ void require_all(const CalibrationText& file, const YAML::Node& root) {
 
 CalibrationFile read_plain_yaml(const CalibrationText& file) {
   const YAML::Node root = load_yaml(file);
-  require_all(file, root);
+  require_plain_keys(file, root);
   StereoCalibration calibration;
   calibration.focal_px = yaml_number(file, root, "focal_px");
   calibration.cx_px = yaml_number(file, root, "cx_px");

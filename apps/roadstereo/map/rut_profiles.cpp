@@ -10,9 +10,7 @@
 namespace roadstereo::cli {
 namespace {
 
-constexpr double mm = 1000;  // in a metre
-
-bool is_rut(const RoadDamageRecord& record) {
+bool has_distress_rut(const RoadDamageRecord& record) {
   const auto& metrics = record.best.damage.metrics;
   return metrics && metrics->distress == Distress::rut;
 }
@@ -30,12 +28,13 @@ bool crosses_damage(const TransverseProfile& profile, std::span<const RoadDamage
   };
   return std::any_of(damages.begin(), damages.end(), [&](const RoadDamageRecord& record) {
     const MapCells& cells = record.best.footprint;
-    return !is_rut(record) && std::any_of(cells.begin(), cells.end(), is_in_strip);
+    return !has_distress_rut(record) && std::any_of(cells.begin(), cells.end(), is_in_strip);
   });
 }
 
 std::string rut_text(std::span<const LaneProfiles> lanes, std::span<const RoadDamageRecord> damages) {
   constexpr std::size_t min_profiles = 5;
+  constexpr double mm = 1000;  // in a metre
   std::vector<double> ruts, floors;
   std::size_t resolvable = 0, in_damage = 0;
   for (const LaneProfiles& lane : lanes) {
