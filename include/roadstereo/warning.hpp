@@ -17,6 +17,7 @@ namespace roadstereo {
 ///   rows-disagree    the rows of the pair are shifted: it is not rectified
 ///   rows-unknown     the row alignment could not be measured: too few points, or they contradict each other
 ///   few-disparities  too few pixels have a disparity, or only some on one line of the image
+///   calibration-size the calibration names no image size, and seems to be that of other pictures
 ///   static-mask      a part of the picture never moves and is ignored from this frame on
 ///   no-damage        damage could not be searched
 ///   search-end       the floor of a damage lies where the searched disparities end
