@@ -53,6 +53,7 @@ std::string flight_text(const FlightRun& run, const FlightSummary& summary, cons
   if (summary.located)
     text += fmt::format("  track     {} of {} frames have a position{}\n", *summary.located, summary.frames,
                         summary.located_by_trajectory > 0 ? ", by the trajectory" : "");
+  if (!summary.track_gaps.empty()) text += fmt::format("            {}\n", summary.track_gaps);
   if (!summary.track_outliers.empty()) text += fmt::format("            {}\n", summary.track_outliers);
   if (!summary.no_position_reason.empty()) text += fmt::format("            {}\n", summary.no_position_reason);
   if (summary.rig_bias.order > 0) {

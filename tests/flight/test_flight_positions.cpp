@@ -49,6 +49,37 @@ TEST(FlightPositions, StationStandsStillWithCamera) {
   for (int i = 1; i < frames; ++i) EXPECT_GE(station_m(i), station_m(i - 1)) << i;
 }
 
+// Fixes at 0 and 2 s, and after a gap at 60 and 61 s.
+TEST(FlightPositions, GapsOfTrackAreTold) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "gap_track.csv";
+  std::ofstream(file) << "time,lat,lon\n0,45,9\n2,45.00001,9\n60,45.0003,9\n61,45.0003,9\n";
+  TrackSettings settings;
+  settings.file = file.string();
+  const auto placed = [&](std::vector<double> times_s) {
+    FlightPositions positions(settings);
+    for (std::size_t i = 0; i < times_s.size(); ++i) {
+      io::FlightFrame frame;
+      frame.index = static_cast<std::int64_t>(i);
+      frame.time_s = times_s[i];
+      positions.add(frame, {});
+    }
+    positions.place({});
+    return positions;
+  };
+  const std::string apart = "frames have no position: the fixes around them are up to 58 s apart (limit 5 s)";
+  const FlightPositions some = placed({1, 3, 30, 60.5, 70});
+  EXPECT_EQ(some.located(), 2U);
+  EXPECT_EQ(some.gaps_text(), "2 of 5 " + apart);
+  EXPECT_EQ(some.no_position_reason(), "");
+  const FlightPositions none = placed({20, 21});
+  EXPECT_EQ(none.no_position_reason(), "2 of 2 " + apart);
+  const FlightPositions later = placed({70, 71});
+  EXPECT_EQ(later.gaps_text(), "");
+  EXPECT_NE(later.no_position_reason().find("--track-offset"), std::string::npos);
+  EXPECT_EQ(placed({0.5, 1.5}).gaps_text(), "");
+  std::filesystem::remove(file);
+}
+
 // A receiver whose fixes wander by metres while the camera stands at a traffic light for 30 s, as the poses tell.
 TEST(FlightPositions, StationIsNotThatOfWanderingFixes) {
   constexpr double north_m = 111132.0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "core/degrees.hpp"
@@ -208,9 +209,34 @@ std::string FlightPositions::no_position_reason() const {
     last = std::max(last, frame.time_s);
   }
   if (first > last) return "the frames have no times; set --rate and --track-offset";
+  if (const std::string gaps = gaps_text(); !gaps.empty()) return gaps;
   return fmt::format(
       "the times of the frames are {:.3f} … {:.3f} s, those of the track {:.3f} … {:.3f} s; see --track-offset", first,
       last, track_.points().front().time_s, track_.points().back().time_s);
+}
+
+/// Time between the fixes around a time; 0 outside of the track and where they are near enough.
+double FlightPositions::gap_s(double time_s) const {
+  const std::vector<io::TrackPoint>& points = track_.points();
+  if (!(time_s > points.front().time_s && time_s < points.back().time_s)) return 0;
+  const auto after = std::lower_bound(points.begin(), points.end(), time_s,
+                                      [](const io::TrackPoint& point, double time) { return point.time_s < time; });
+  const double apart_s = after->time_s - std::prev(after)->time_s;
+  return apart_s > track_.options().max_gap_s ? apart_s : 0;
+}
+
+std::string FlightPositions::gaps_text() const {
+  std::size_t without = 0;
+  double longest_s = 0;
+  for (const io::GeoFrame& frame : frames_) {
+    const double apart_s = frame.position ? 0 : gap_s(frame.time_s);
+    if (apart_s == 0) continue;
+    ++without;
+    longest_s = std::max(longest_s, apart_s);
+  }
+  if (without == 0) return {};
+  return fmt::format("{} of {} frames have no position: the fixes around them are up to {:.0f} s apart (limit {} s)",
+                     without, frames_.size(), longest_s, track_.options().max_gap_s);
 }
 
 std::string FlightPositions::outliers_text() const {

@@ -35,6 +35,10 @@ class FlightPositions {
   /// Returns the reason if no frame has a position, with the times of frames and track, else "".
   std::string no_position_reason() const;
 
+  /// Returns how many frames have no position since the fixes around them are too far apart in time, and how far; "" if
+  /// there is none.
+  std::string gaps_text() const;
+
   /// Returns how many fixes of the track were left out as outliers, and the first one's time; "" if none was.
   std::string outliers_text() const;
 
@@ -64,6 +68,7 @@ class FlightPositions {
   double distance_ahead_m(std::size_t i, const Damage& damage) const;
   double distance_ahead_m(std::size_t i, const io::GeoPosition& place) const;
   std::size_t at_or_after(std::int64_t index) const;
+  double gap_s(double time_s) const;
   std::optional<std::size_t> first_pass(std::int64_t first_frame, const io::GeoPosition& place) const;
 
   double offset_s_;

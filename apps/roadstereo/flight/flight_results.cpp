@@ -122,6 +122,7 @@ std::vector<std::string> notices_of(const FlightRun& run, const FlightSummary& s
   if (!run.complete) notices.emplace_back("The flight was interrupted; continue it with inspect --resume.");
   if (!summary.no_position_reason.empty())
     notices.push_back("No frame has a position: " + summary.no_position_reason + ".");
+  if (!summary.track_gaps.empty()) notices.push_back("Track: " + summary.track_gaps + ".");
   if (!summary.track_outliers.empty()) notices.push_back("Track: " + summary.track_outliers + ".");
   if (!run.no_map_reason.empty()) notices.push_back("There is no map: " + run.no_map_reason + ".");
   if (summary.static_mask.share > 0) {
@@ -267,6 +268,7 @@ std::string FlightResults::write(const FlightSettings& settings, const FlightRun
     summary_.located = static_cast<std::int64_t>(positions_->located());
     summary_.located_by_trajectory = static_cast<std::int64_t>(run.places.size());
     summary_.no_position_reason = positions_->no_position_reason();
+    if (summary_.no_position_reason.empty()) summary_.track_gaps = positions_->gaps_text();
     summary_.track_outliers = positions_->outliers_text();
   }
   summary_.rig_bias = rig_bias_.estimate(run.calibration);

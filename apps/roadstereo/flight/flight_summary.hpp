@@ -26,6 +26,7 @@ struct FlightSummary {
   std::optional<std::int64_t> located;     ///< frames with a position; absent without a track
   std::int64_t located_by_trajectory = 0;  ///< of these, those placed by the trajectory instead of the track
   std::string no_position_reason;          ///< reason if no frame has a position
+  std::string track_gaps;                  ///< which frames have no position since fixes lack, if others have one
   std::string track_outliers;              ///< which fixes of the track were left out
   std::int64_t damages = 0;                ///< road damages (FlightInventory)
   std::int64_t candidates = 0;             ///< of the road

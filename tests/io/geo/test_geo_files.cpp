@@ -508,11 +508,11 @@ class Ogrinfo : public GeoFile {
 };
 
 TEST_F(Ogrinfo, OpensGeoPackage) {
-  expect_shown(
-      write_flight(),
-      {"using driver `GPKG' successful", "Layer name: frames", "Layer name: damages", "Layer name: sightings",
-       "Layer name: footprints", "Layer name: track", "Layer name: layer_styles", "POLYGON ((",
-       "time_utc (DateTime) = 2024/05/01 12:01:00+00", "cut_by_border (Integer(Boolean)) = 1", "LINESTRING (179.9375 0.0,"});
+  expect_shown(write_flight(),
+               {"using driver `GPKG' successful", "Layer name: frames", "Layer name: damages", "Layer name: sightings",
+                "Layer name: footprints", "Layer name: track", "Layer name: layer_styles", "POLYGON ((",
+                "time_utc (DateTime) = 2024/05/01 12:01:00+00", "cut_by_border (Integer(Boolean)) = 1",
+                "LINESTRING (179.9375 0.0,"});
 }
 
 TEST_F(Ogrinfo, OpensGeoJson) {
