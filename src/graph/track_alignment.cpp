@@ -147,16 +147,16 @@ class Aligner {
     return largest;
   }
 
-  /// Of the pieces that the fixes anchor the one that goes farthest.
-  Spread largest_spread(double offset_s) const {
-    Spread largest;
+  /// Of the pieces that the fixes anchor the one along which they move most.
+  Spread liveliest_spread(double offset_s) const {
+    Spread liveliest;
     for (std::size_t piece = 0; piece < level_.size(); ++piece) {
       const std::vector<TrackMatch> matches = matches_of(piece, offset_s, false);
       if (!anchors(matches)) continue;
       const Spread one = spread(matches);
-      if (one.frames_m > largest.frames_m) largest = one;
+      if (one.fixes_m * liveliest.frames_m >= liveliest.fixes_m * one.frames_m) liveliest = one;
     }
-    return largest;
+    return liveliest;
   }
 
   bool has_vertical() const {
@@ -254,7 +254,7 @@ std::string refusal(const Aligner& aligner, double offset_s) {
   constexpr double better = 3, noticeable = 0.01, standing = 0.25;
   const OffsetFit straight = aligner.fit(offset_s, false);
   const OffsetFit mirrored = aligner.fit(aligner.best_offset(true), true);
-  const Spread spread = aligner.largest_spread(offset_s);
+  const Spread spread = aligner.liveliest_spread(offset_s);
   std::ostringstream text;
   text.precision(3);
   if (spread.fixes_m < standing * spread.frames_m) {

@@ -240,55 +240,6 @@ TEST_F(TrackOfBend, FailureOfPoseGraphLeavesInspection) {
   }
 }
 
-// The second half of a recording is on another road, 14° of longitude further east three hours later: UTM zone 32 ends
-// 500 km from its meridian. No pose is in it, then, and none is in part.
-TEST_F(TrackOfBend, PosesTooFarFromTheirZoneStayInTheWorldOfTheOdometry) {
-  if (!has_pose_graph()) GTEST_SKIP() << "a build without Ceres";
-  ASSERT_EQ(run("synth --scene random --seed 3 --size 256x144 --frames 12 --flight "
-                "loop=40,step=0.5,roll=2,pitch=2 --output other --quiet")
-                .exit_code,
-            0);
-  constexpr std::size_t second = 6;  // the middle fix, and so the zone, is of the first road
-  constexpr double later_s = 3 * 3600;
-  std::string times, track_text = track(1);
-  std::istringstream lines(track_text);
-  std::string line;
-  std::getline(lines, line);
-  std::string moved = line + "\n";
-  for (std::size_t i = 0; i < times_s_.size(); ++i) {
-    const bool there = i >= second;
-    times += std::to_string(times_s_[i] + (there ? later_s : 0)) + "\n";
-    std::getline(lines, line);
-    std::array<double, 6> values{};
-    char comma = 0;
-    std::istringstream numbers(line);
-    for (double& value : values) numbers >> value >> comma;
-    char text[160];
-    std::snprintf(text, sizeof text, "%.6f,%.10f,%.10f,%.4f,0.05,0.1\n", values[0] + (there ? later_s : 0), values[1],
-                  values[2] + (there ? 14 : 0), values[3]);
-    moved += text;
-    if (!there) continue;
-    for (const char* const view : {"left", "right"}) {
-      const std::string name = std::to_string(1000000 + i).substr(1) + ".png";
-      std::filesystem::copy_file(folder_ / "other" / view / name, folder_ / "flight" / view / name,
-                                 std::filesystem::copy_options::overwrite_existing);
-    }
-  }
-  write("flight/times.txt", times);
-  write("track.csv", moved);
-  ASSERT_EQ(run("inspect flight --trajectory --output odometry --quiet").exit_code, 0);
-  expect_complaint(run("inspect flight --trajectory --track track.csv --track-offset 2.5 --output out --quiet"),
-                   "too far from UTM zone 32");
-  const Trajectory found = io::read_trajectory((folder_ / "out/trajectory_kitti.txt").string());
-  const Trajectory odometry = io::read_trajectory((folder_ / "odometry/trajectory_kitti.txt").string());
-  ASSERT_EQ(found.frames.size(), odometry.frames.size());
-  for (std::size_t i = 0; i < found.frames.size(); ++i) {
-    for (std::size_t k = 0; k < 12; ++k) {
-      EXPECT_NEAR(found.frames[i].camera_to_world[k], odometry.frames[i].camera_to_world[k], 1e-9) << i << ' ' << k;
-    }
-  }
-}
-
 TEST_F(SlowTrajectoryCommand, MapIsThatOfMapCommandAlsoAfterResume) {
   const Outcome outcome = run("inspect flight --map --output out --quiet");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
