@@ -66,7 +66,7 @@ TEST(FlightPositions, GapsOfTrackAreTold) {
     positions.place({});
     return positions;
   };
-  const std::string apart = "frames have no position: the fixes around them are up to 58 s apart (limit 5 s)";
+  const std::string apart = "frames lie between fixes that are too far apart, up to 58 s (limit 5 s)";
   const FlightPositions some = placed({1, 3, 30, 60.5, 70});
   EXPECT_EQ(some.located(), 2U);
   EXPECT_EQ(some.gaps_text(), "2 of 5 " + apart);

@@ -235,8 +235,8 @@ std::string FlightPositions::gaps_text() const {
     longest_s = std::max(longest_s, apart_s);
   }
   if (without == 0) return {};
-  return fmt::format("{} of {} frames have no position: the fixes around them are up to {:.0f} s apart (limit {} s)",
-                     without, frames_.size(), longest_s, track_.options().max_gap_s);
+  return fmt::format("{} of {} frames lie between fixes that are too far apart, up to {:.0f} s (limit {} s)", without,
+                     frames_.size(), longest_s, track_.options().max_gap_s);
 }
 
 std::string FlightPositions::outliers_text() const {
