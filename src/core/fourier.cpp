@@ -40,7 +40,7 @@ void FourierSquare::transform_columns() {
   for (int half = 1; half < side; half *= 2) {
     for (int v = 0; v < side; ++v) {
       if ((v & half) != 0) continue;
-      const auto turn = static_cast<std::size_t>(v % half * (side / 2 / half));
+      const auto turn = static_cast<std::size_t>(v % half) * static_cast<std::size_t>(side / 2 / half);
       const float c = cosines_[turn], s = sines_[turn];
       float *const a = real_row(v), *const b = imaginary_row(v);
       float *const x = real_row(v + half), *const y = imaginary_row(v + half);

@@ -12,8 +12,8 @@ class FourierSquare {
 
   FourierSquare();
 
-  float* real_row(int v) { return real_.data() + v * side; }
-  float* imaginary_row(int v) { return imaginary_.data() + v * side; }
+  float* real_row(int v) { return real_[static_cast<std::size_t>(v)].data(); }
+  float* imaginary_row(int v) { return imaginary_[static_cast<std::size_t>(v)].data(); }
 
   /// Transforms the square, in place and transposed: row k has the frequency k along the rows, or k − side, and column
   /// l the frequency l along the columns.
@@ -25,7 +25,7 @@ class FourierSquare {
   void transpose();
 
   std::array<float, side / 2> cosines_, sines_;
-  std::array<float, side * side> real_, imaginary_;
+  std::array<std::array<float, side>, side> real_, imaginary_;
 };
 
 }  // namespace roadstereo

@@ -167,8 +167,8 @@ class Aligner {
   /// A piece has a direction if it is longer than its positions are uncertain.
   static bool anchors(const std::vector<TrackMatch>& matches) {
     if (matches.size() < 2) return false;
-    std::vector<double> sd_m;
-    for (const TrackMatch& match : matches) sd_m.push_back(match.sd_m);
+    std::vector<double> sd_m(matches.size());
+    std::transform(matches.begin(), matches.end(), sd_m.begin(), [](const TrackMatch& match) { return match.sd_m; });
     return extent(matches) > upper_median(sd_m);
   }
 

@@ -42,14 +42,14 @@ struct PairSpectrum {
 /// same powers.
 struct Radii {
   static constexpr int first_row = 1, end_row = side / 2;
-  std::array<int, side * side> of_bin{};
+  std::array<std::array<int, side>, side> of_bin{};
   std::array<int, frequencies> bins{};
 
   Radii() {
     for (int k = first_row; k < end_row; ++k) {
       for (int l = 0; l < side; ++l) {
         const int radius = static_cast<int>(std::lround(std::hypot(k, std::min(l, side - l))));
-        of_bin[static_cast<std::size_t>(k * side + l)] = std::min(radius, frequencies);
+        of_bin[static_cast<std::size_t>(k)][static_cast<std::size_t>(l)] = std::min(radius, frequencies);
         if (radius < frequencies) ++bins[static_cast<std::size_t>(radius)];
       }
     }
@@ -104,7 +104,7 @@ class WindowSpectra {
     for (int k = Radii::first_row; k < Radii::end_row; ++k) {
       const float *const a = square_.real_row(k), *const b = square_.imaginary_row(k);
       const float *const c = square_.real_row(side - k), *const d = square_.imaginary_row(side - k);
-      const int* const radius = radii_.of_bin.data() + k * side;
+      const int* const radius = radii_.of_bin[static_cast<std::size_t>(k)].data();
       for (int l = 0; l < side; ++l) {
         const int opposite = (side - l) % side;
         const float even = a[l] + c[opposite], odd = b[l] - d[opposite];

@@ -209,7 +209,7 @@ std::string FlightPositions::no_position_reason() const {
     last = std::max(last, frame.time_s);
   }
   if (first > last) return "the frames have no times; set --rate and --track-offset";
-  if (const std::string gaps = gaps_text(); !gaps.empty()) return gaps;
+  if (std::string gaps = gaps_text(); !gaps.empty()) return gaps;
   return fmt::format(
       "the times of the frames are {:.3f} … {:.3f} s, those of the track {:.3f} … {:.3f} s; see --track-offset", first,
       last, track_.points().front().time_s, track_.points().back().time_s);
