@@ -41,7 +41,7 @@ struct PipelineOptions {
                               ///< is unknown
   bool correct_rows = true;   ///< undo the misalignment, up to 8 px, that `check_rows` has measured
   bool equalise_blur = true;  ///< smooth the sharper image of a pair of which one is blurred more, by defocus: measured
-                              ///< whenever the road is searched without tracking, and every 100 frames
+                              ///< in the first frame, and every 100 frames
   bool narrow_search = true;  ///< search each tile only near the disparities that the coarse search finds there
   RoadModelOptions road_model;
   PerspectiveOptions perspective;

@@ -20,8 +20,8 @@ double equalised_px2(const BlurDifference& measured) {
 }  // namespace
 
 bool blur_is_due(const PipelineState& carried) {
-  constexpr int frames_while_tracked = 100;
-  return !carried.road || carried.frames_since_blur >= frames_while_tracked;
+  constexpr int frames_between = 100;
+  return carried.frames_since_blur == 0 || carried.frames_since_blur >= frames_between;
 }
 
 void update_blur(const BlurDifference& measured, PipelineState& carried) {

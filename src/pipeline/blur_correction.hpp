@@ -5,7 +5,7 @@
 
 namespace roadstereo {
 
-/// Whether the blur of a pair is to be measured: with every road that is searched without tracking, and now and then.
+/// Whether the blur of a pair is to be measured: in the first frame, and now and then. It is the rig's, not the road's.
 bool blur_is_due(const PipelineState& carried);
 
 /// Takes a measurement into the state, if it differs significantly from what the state has.

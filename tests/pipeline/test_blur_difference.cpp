@@ -201,6 +201,13 @@ TEST(EqualisedBlur, IsCarriedOver) {
   EXPECT_EQ(again.smoothed_px2, measured);
   EXPECT_TRUE(std::equal(again.disparity.row(0), again.disparity.row(0) + expected.pixels(), expected.row(0),
                          [](float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }));
+  PipelineState lost = state;
+  lost.road.reset();  // which tells nothing of the lenses
+  resumed.restore(lost);
+  const FrameResult& searched = resumed.process(second.pair.left.view(), second.pair.right.view());
+  EXPECT_EQ(searched.road.status, RoadStatus::found);
+  EXPECT_FALSE(searched.blur.known());
+  EXPECT_EQ(searched.smoothed_px2, measured);
   state.frames_since_blur = 1000;
   resumed.restore(state);
   EXPECT_TRUE(resumed.process(second.pair.left.view(), second.pair.right.view()).blur.known());
